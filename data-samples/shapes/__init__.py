@@ -1,0 +1,1 @@
+"""Parametric families of shapes, one module per category of the archive."""

@@ -1,0 +1,1 @@
+//! Scores of retrieval: precision-recall, measures, significance, and the report.

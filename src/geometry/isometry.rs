@@ -1,0 +1,110 @@
+//! Isometries with their handedness, and the best one between two point sets.
+
+use super::{Matrix, Plane, Point, Transform, Vector};
+
+/// Whether an isometry keeps left and right (`Proper`: rotations, translations) or swaps them (`Improper`: mirrors).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Chirality {
+    Proper,
+    Improper,
+}
+
+/// p -> rotation * p + translation; the determinant of `rotation` is 1 or -1 as the chirality says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Isometry {
+    pub rotation: Matrix,
+    pub translation: Vector,
+    pub chirality: Chirality,
+}
+
+impl Isometry {
+    /// The reflection in `plane`: a Householder matrix.
+    pub fn reflection(plane: &Plane) -> Self {
+        let n = plane.normal;
+        Self {
+            rotation: Matrix::identity() - 2.0 * n * n.transpose(),
+            translation: n * (2.0 * plane.offset),
+            chirality: Chirality::Improper,
+        }
+    }
+
+    /// The image of a point.
+    pub fn apply(&self, p: &Point) -> Point {
+        Point::from(self.rotation * p.coords + self.translation)
+    }
+
+    /// The same map as a similarity.
+    pub fn as_transform(&self) -> Transform {
+        Transform { linear: self.rotation, translation: self.translation }
+    }
+
+    /// The isometry of the asked chirality that takes `from` to `to` with the least squared error, scale 1
+    /// (Umeyama 1991, the paper's section IV.C), and its mean squared residual, mm^2.
+    ///
+    /// `None` for fewer than three pairs or collinear points.
+    pub fn fit(from: &[Point], to: &[Point], chirality: Chirality) -> Option<(Self, f64)> {
+        let n = from.len();
+        if n < 3 || n != to.len() {
+            return None;
+        }
+        let (a, b) = (mean(from), mean(to));
+        let covariance = from.iter().zip(to).map(|(p, q)| (q - b) * (p - a).transpose()).sum::<Matrix>();
+        let svd = covariance.svd(true, true);
+        let (u, v_t) = (svd.u?, svd.v_t?);
+        let (first, second) = (svd.singular_values[0], svd.singular_values[1]);
+        if second <= 1e-9 * first || !first.is_finite() {
+            return None;
+        }
+        let wanted = if chirality == Chirality::Proper { 1.0 } else { -1.0 };
+        let sign = wanted * (u * v_t).determinant().signum();
+        let mut diagonal = Vector::new(1.0, 1.0, 1.0);
+        diagonal.z = sign;
+        let rotation = u * Matrix::from_diagonal(&diagonal) * v_t;
+        let translation = b.coords - rotation * a.coords;
+        let fitted = Self { rotation, translation, chirality };
+        let squared = from.iter().zip(to).map(|(p, q)| (fitted.apply(p) - q).norm_squared()).sum::<f64>();
+        Some((fitted, squared / n as f64))
+    }
+}
+
+/// The mean of the points.
+pub fn mean(points: &[Point]) -> Point {
+    let sum: Vector = points.iter().map(|p| p.coords).sum();
+    Point::from(sum / points.len().max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners() -> Vec<Point> {
+        [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 1.0]].map(Point::from).to_vec()
+    }
+
+    #[test]
+    fn a_mirror_is_improper() {
+        let plane = Plane::through(&Point::new(5.0, 1.0, 0.0), &Vector::new(1.0, 2.0, 3.0));
+        let images: Vec<_> = corners().iter().map(|p| plane.reflect(p)).collect();
+        let (fitted, residual) = Isometry::fit(&corners(), &images, Chirality::Improper).unwrap();
+        assert!(residual < 1e-20);
+        assert!((fitted.rotation - plane.reflection().rotation).norm() < 1e-12);
+        assert!((fitted.translation - plane.reflection().translation).norm() < 1e-12);
+        let (_, proper) = Isometry::fit(&corners(), &images, Chirality::Proper).unwrap();
+        assert!(proper > 0.01);
+    }
+
+    #[test]
+    fn coplanar_corners_have_both_solutions() {
+        let flat: Vec<_> = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Point::from).to_vec();
+        let moved: Vec<_> = flat.iter().map(|p| p + Vector::new(1.0, 1.0, 1.0)).collect();
+        for chirality in [Chirality::Proper, Chirality::Improper] {
+            assert!(Isometry::fit(&flat, &moved, chirality).unwrap().1 < 1e-20);
+        }
+    }
+
+    #[test]
+    fn collinear_points_have_no_isometry() {
+        let line: Vec<_> = (0..4).map(|i| Point::new(i as f64, 0.0, 0.0)).collect();
+        assert!(Isometry::fit(&line, &line, Chirality::Proper).is_none());
+    }
+}

@@ -1,0 +1,1 @@
+//! The stages as workers on bounded channels: the only threads and channels.

@@ -1,0 +1,1 @@
+//! Pictures of models: shaded, anti-aliased, hidden surfaces hidden.

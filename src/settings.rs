@@ -1,0 +1,1 @@
+//! `pipeline.toml`: as written -> ready to use.
