@@ -1,0 +1,25 @@
+# The commands people and CI run. `just` lists them.
+
+default:
+    @just --list
+
+# Format, lint, test and run the main job, as CI does.
+ci:
+    bash .ci/run
+
+# Run all tests.
+test:
+    cargo test --release
+
+# The main job: data-samples in, report out.
+main:
+    cargo run --release -- run
+
+# Lint with warnings as errors.
+lint:
+    cargo fmt --check
+    cargo clippy --release --all-targets -- -D warnings
+
+# Benchmarks (ratios in one run).
+bench:
+    cargo bench
