@@ -30,6 +30,9 @@ pub struct MeshFace {
     pub area: f64,
     /// Area centroid of the trimmed surface.
     pub centroid: Point,
+    /// What the face adds to the volume of its solid, mm^3: a third of the integral of (p - q) . n over the trimmed
+    /// surface, with one point q for all faces of the occurrence. Summed over a closed shell q does not matter.
+    pub flux: f64,
 }
 
 /// Triangles of all placed faces; counter-clockwise seen from the face normal's side (outside, for solids).

@@ -84,6 +84,7 @@ mod tests {
             triangles: 0..2,
             area: 10.0,
             centroid: Point::origin(),
+            flux: 0.0,
         };
         let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 3, 1]], faces: vec![face] };
         let samples = sample_mesh(&mesh, 100);
