@@ -1,1 +1,275 @@
 //! `pipeline.toml`: as written -> ready to use.
+//!
+//! The defaults of the chosen profile come first, the keys of the file over them, the command line over both. A key
+//! that is not known is an error, and so is a number out of its range.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Deserializer, Serialize};
+use toml::{Table, Value};
+
+use crate::alignment::Method;
+use crate::error::{Result, RunError};
+use crate::stages::Stage;
+
+/// Which set of defaults.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Profile {
+    /// The method made to work on real parts.
+    #[default]
+    Default,
+    /// The literal reading of the paper, for comparison.
+    Paper,
+}
+
+/// Limits for one model, so that one file cannot hold up or bring down a run of thousands. They do not count as
+/// settings that results depend on: raise them and `run --retry-failed`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Limits {
+    /// Largest model, bytes after decompression. The largest real files met have some hundreds of MB.
+    pub bytes: u64,
+    /// Most placed faces. A million is an assembly far beyond a part.
+    pub faces: usize,
+    /// Most triangles of the mesh. Twenty million take about 1 GB.
+    pub triangles: usize,
+    /// Seconds of computing for one model; 60 is a hundred times the mean.
+    pub seconds: f64,
+    /// Memory for all models in flight together, MB, as estimated from their file sizes; 0: half of the machine's. A
+    /// model waits for room; one that needs more than all of it runs alone.
+    pub memory_mb: u64,
+    /// How many times its own size an archive may unpack to. STEP text shrinks 5 to 20 times.
+    pub expansion: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { bytes: 1 << 30, faces: 1_000_000, triangles: 20_000_000, seconds: 60.0, memory_mb: 0, expansion: 1000 }
+    }
+}
+
+/// Everything that can be set; [`Settings::load`] reads it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// The set of defaults that the file's keys lie over.
+    pub profile: Profile,
+    /// Files, folders and archives to read.
+    #[serde(deserialize_with = "one_or_many")]
+    pub input: Vec<PathBuf>,
+    /// Folder of the store.
+    pub store: PathBuf,
+    /// CSV file with a category for each model, or `parent-folder`. Given: `run` ends with the report.
+    pub labels: Option<PathBuf>,
+    /// Folder that the report is written to.
+    pub report: PathBuf,
+    /// Frames to compute and compare, the first one the default of `query`.
+    pub methods: Vec<Method>,
+    /// Models computed at the same time; 0: one for each core.
+    pub jobs: usize,
+    /// Gives every model a random rigid motion after reading, fixed by this seed and the model's bytes.
+    pub random_pose: Option<u64>,
+    /// Threads for each stage; a stage that is not named gets `jobs`.
+    pub workers: BTreeMap<Stage, usize>,
+    /// Models that may wait before each stage; a stage that is not named lets 2 wait.
+    pub queues: BTreeMap<Stage, usize>,
+    pub limits: Limits,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::profile(Profile::Default)
+    }
+}
+
+/// Keys that results do not depend on.
+const INDIFFERENT: [&str; 8] = ["input", "store", "labels", "report", "jobs", "workers", "queues", "limits"];
+
+impl Settings {
+    /// The defaults of a profile.
+    pub fn profile(profile: Profile) -> Self {
+        Self {
+            profile,
+            input: Vec::new(),
+            store: "store".into(),
+            labels: None,
+            report: "report".into(),
+            methods: Method::ALL.to_vec(),
+            jobs: 0,
+            random_pose: None,
+            workers: BTreeMap::new(),
+            queues: BTreeMap::new(),
+            limits: Limits::default(),
+        }
+    }
+
+    /// Reads a settings file.
+    ///
+    /// Errors: the file cannot be read, is not TOML, has an unknown key, or a value out of its range.
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|e| RunError::file(path, e))?;
+        Self::parse(&text).map_err(|why| RunError::Settings(format!("{}: {why}", path.display())))
+    }
+
+    /// Reads settings from TOML text.
+    pub fn parse(text: &str) -> std::result::Result<Self, String> {
+        // Read twice: only the text knows lines and columns, only the table knows which keys were written.
+        let written: Self = toml::from_str(text).map_err(|e| e.to_string())?;
+        let table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
+        let mut all = table_of(&Self::profile(written.profile))?;
+        overlay(&mut all, table);
+        let settings: Self = all.try_into().map_err(|e: toml::de::Error| e.to_string())?;
+        settings.check()?;
+        Ok(settings)
+    }
+
+    /// Checks every value against its range. To be called again after changes from the command line.
+    pub fn check(&self) -> std::result::Result<(), String> {
+        check_numbers("", &Value::Table(table_of(self)?))?;
+        let positive = [
+            ("limits.bytes", self.limits.bytes > 0),
+            ("limits.faces", self.limits.faces > 0),
+            ("limits.triangles", self.limits.triangles > 0),
+            ("limits.seconds", self.limits.seconds > 0.0),
+            ("limits.expansion", self.limits.expansion > 0),
+            ("every key of workers", self.workers.values().all(|n| *n > 0)),
+            ("every key of queues", self.queues.values().all(|n| *n > 0)),
+        ];
+        if let Some((key, _)) = positive.iter().find(|(_, good)| !good) {
+            return Err(format!("{key} must be above 0"));
+        }
+        self.check_methods()
+    }
+
+    fn check_methods(&self) -> std::result::Result<(), String> {
+        let doubled = self.methods.iter().enumerate().find(|(i, method)| self.methods[..*i].contains(method));
+        match doubled {
+            Some((_, method)) => Err(format!("methods: {} is there twice", method.name())),
+            None if self.methods.is_empty() => Err("methods: name at least one".into()),
+            None => Ok(()),
+        }
+    }
+
+    /// The settings that results depend on, as TOML with sorted keys; the program's version among them.
+    pub fn effective(&self) -> Result<String> {
+        let mut table = table_of(self).map_err(RunError::Settings)?;
+        table.retain(|key, _| !INDIFFERENT.contains(&key));
+        table.insert("version".into(), env!("CARGO_PKG_VERSION").into());
+        toml::to_string(&table).map_err(|e| RunError::Settings(e.to_string()))
+    }
+
+    /// Models computed at the same time.
+    pub fn busy_limit(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, |n| n.get());
+        if self.jobs == 0 { cores() } else { self.jobs }
+    }
+
+    /// Threads for a stage.
+    pub fn workers_of(&self, stage: Stage) -> usize {
+        self.workers.get(&stage).copied().unwrap_or_else(|| self.busy_limit())
+    }
+
+    /// Models that may wait before a stage.
+    pub fn queue_of(&self, stage: Stage) -> usize {
+        self.queues.get(&stage).copied().unwrap_or(2)
+    }
+}
+
+fn table_of(settings: &Settings) -> std::result::Result<Table, String> {
+    Table::try_from(settings).map_err(|e| e.to_string())
+}
+
+/// Puts the values of `over` in the place of those of `base`, table by table.
+fn overlay(base: &mut Table, over: Table) {
+    for (key, value) in over {
+        match (base.get_mut(&key), value) {
+            (Some(Value::Table(inner)), Value::Table(value)) => overlay(inner, value),
+            (_, value) => drop(base.insert(key, value)),
+        }
+    }
+}
+
+/// No setting is negative or not a number.
+fn check_numbers(key: &str, value: &Value) -> std::result::Result<(), String> {
+    let good = match value {
+        Value::Integer(number) => *number >= 0,
+        Value::Float(number) => number.is_finite() && *number >= 0.0,
+        Value::Table(table) => {
+            let dot = if key.is_empty() { "" } else { "." };
+            return table.iter().try_for_each(|(name, value)| check_numbers(&format!("{key}{dot}{name}"), value));
+        }
+        Value::Array(values) => return values.iter().try_for_each(|value| check_numbers(key, value)),
+        _ => true,
+    };
+    if good { Ok(()) } else { Err(format!("{key} is {value}; a finite number of at least 0 is due")) }
+}
+
+/// Accepts `input = "a"` and `input = ["a", "b"]`.
+fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Vec<PathBuf>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Paths {
+        One(PathBuf),
+        Many(Vec<PathBuf>),
+    }
+    Ok(match Paths::deserialize(deserializer)? {
+        Paths::One(path) => vec![path],
+        Paths::Many(paths) => paths,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_file_lies_over_the_profile() {
+        let text = "profile = \"paper\"\ninput = \"models\"\n[limits]\nseconds = 5\n[workers]\nparse = 3";
+        let settings = Settings::parse(text).unwrap();
+        assert_eq!(settings.input, [PathBuf::from("models")]);
+        assert_eq!((settings.limits.seconds, settings.limits.bytes), (5.0, Limits::default().bytes));
+        assert_eq!((settings.workers_of(Stage::Parse), settings.queue_of(Stage::Merge)), (3, 2));
+        assert_eq!(Settings::parse("").unwrap(), Settings::default());
+    }
+
+    #[test]
+    fn a_bad_key_or_value_is_named() {
+        let cases = [
+            ("colour = 1", "colour"),
+            ("[limits]\nsecond = 1", "second"),
+            ("[limits]\nseconds = -1", "limits.seconds"),
+            ("[limits]\nseconds = nan", "limits.seconds"),
+            ("[limits]\nfaces = 0", "limits.faces"),
+            ("[workers]\nparsing = 1", "parsing"),
+            ("[queues]\nparse = 0", "queues"),
+            ("methods = [\"pca\", \"pca\"]", "pca"),
+            ("methods = []", "methods"),
+            ("methods = [\"pcb\"]", "pcb"),
+            ("profile = \"best\"", "best"),
+            ("jobs = ", "1"),
+        ];
+        for (text, named) in cases {
+            let error = Settings::parse(text).unwrap_err();
+            assert!(error.contains(named), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_change_results_does_not_change_the_fingerprint() {
+        let base = Settings::default().effective().unwrap();
+        let same =
+            "input = \"x\"\njobs = 3\nstore = \"y\"\nlabels = \"z\"\n[workers]\nparse = 2\n[limits]\nseconds = 1";
+        assert_eq!(Settings::parse(same).unwrap().effective().unwrap(), base);
+        let other = Settings::parse("random_pose = 1").unwrap().effective().unwrap();
+        assert_eq!(crate::store::differences(&base, &other), ["random_pose: not set, 1"]);
+    }
+
+    #[test]
+    fn the_effective_settings_can_be_read_again() {
+        let mut text = Settings::profile(Profile::Paper).effective().unwrap();
+        text = text.lines().filter(|line| !line.starts_with("version")).map(|line| format!("{line}\n")).collect();
+        assert_eq!(Settings::parse(&text).unwrap(), Settings::profile(Profile::Paper));
+    }
+}
