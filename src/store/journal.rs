@@ -55,6 +55,8 @@ impl Journal {
     /// A new, empty journal for these settings, replacing any that was there.
     pub fn create(path: &Path, settings: &str) -> Result<Self> {
         let mut journal = Self::open_file(path, true)?;
+        // Twice: without its settings a journal is worth nothing, so one damaged copy must not lose them.
+        journal.write(SETTINGS, settings.as_bytes())?;
         journal.write(SETTINGS, settings.as_bytes())?;
         journal.commit()?;
         Ok(journal)
@@ -63,6 +65,8 @@ impl Journal {
     /// Opens the journal at `path` and returns it with the settings it was made with. A torn tail is cut off.
     ///
     /// `None`: there is none, or it was cut off before its settings were whole.
+    ///
+    /// Errors: it cannot be read, or there are outcomes but both copies of the settings are damaged.
     pub fn open(path: &Path) -> Result<Option<(Self, String)>> {
         if !path.exists() {
             return Ok(None);
@@ -73,7 +77,11 @@ impl Journal {
         if torn > 0 {
             journal.file.set_len(journal.length).map_err(|e| RunError::file(path, e))?;
         }
-        Ok(settings.map(|settings| (journal, settings)))
+        match settings {
+            Some(settings) => Ok(Some((journal, settings))),
+            None if journal.is_empty() => Ok(None),
+            None => Err(journal.error("both copies of its settings are damaged; start over with --fresh".into())),
+        }
     }
 
     fn open_file(path: &Path, fresh: bool) -> Result<Self> {
@@ -90,6 +98,11 @@ impl Journal {
     /// The outcome of the model with these bytes was recorded; `Some(true)`: done, `Some(false)`: lost.
     pub fn knows(&self, hash: &Hash) -> Option<bool> {
         self.index.get(hash).map(|place| place.done)
+    }
+
+    /// All recorded models, in no order; true: done, false: lost.
+    pub fn outcomes(&self) -> impl Iterator<Item = (&Hash, bool)> {
+        self.index.iter().map(|(hash, place)| (hash, place.done))
     }
 
     /// The last recorded outcome of the model with these bytes.
@@ -305,17 +318,19 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = journal(dir.path());
         let whole = read_all(&path).unwrap();
-        let record = (whole.len() - (HEAD + 5)) / 3;
+        let head = 2 * (HEAD + 5);
+        let record = (whole.len() - head) / 3;
         for length in 0..whole.len() {
             std::fs::write(&path, &whole[..length]).unwrap();
-            let records = length.saturating_sub(HEAD + 5) / record;
+            let records = length.saturating_sub(head) / record;
             let Some((journal, _)) = Journal::open(&path).unwrap() else {
                 assert!(length < HEAD + 5, "settings lost at {length}");
                 continue;
             };
             assert_eq!((journal.len(), journal.damage().len()), (records, 0), "at {length}");
             drop(journal);
-            assert_eq!(read_all(&path).unwrap(), whole[..HEAD + 5 + records * record]);
+            let kept = if length < head { HEAD + 5 } else { head + records * record };
+            assert_eq!(read_all(&path).unwrap(), whole[..kept]);
         }
     }
 
@@ -324,8 +339,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = journal(dir.path());
         let whole = read_all(&path).unwrap();
-        let record = (whole.len() - (HEAD + 5)) / 3;
-        let second = HEAD + 5 + record..HEAD + 5 + 2 * record;
+        let head = 2 * (HEAD + 5);
+        let record = (whole.len() - head) / 3;
+        let second = head + record..head + 2 * record;
         for bit in second.start * 8..second.end * 8 {
             let mut bytes = whole.clone();
             bytes[bit / 8] ^= 1 << (bit % 8);
@@ -333,5 +349,24 @@ mod tests {
             let (journal, _) = Journal::open(&path).unwrap().unwrap();
             assert_eq!((known(&journal), journal.damage().len()), (vec![1, 3], 1), "bit {bit}");
         }
+    }
+
+    #[test]
+    fn one_damaged_copy_of_the_settings_loses_nothing() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = journal(dir.path());
+        let whole = read_all(&path).unwrap();
+        for copy in [0, HEAD + 5] {
+            let mut bytes = whole.clone();
+            bytes[copy + HEAD] ^= 1;
+            std::fs::write(&path, &bytes).unwrap();
+            let (journal, settings) = Journal::open(&path).unwrap().unwrap();
+            assert_eq!((settings.as_str(), known(&journal)), ("a = 1", vec![1, 2, 3]));
+        }
+        let mut bytes = whole.clone();
+        bytes[HEAD] ^= 1;
+        bytes[HEAD + 5 + HEAD] ^= 1;
+        std::fs::write(&path, &bytes).unwrap();
+        assert!(Journal::open(&path).unwrap_err().to_string().contains("settings"));
     }
 }

@@ -1,0 +1,85 @@
+//! What travels between the workers: a model's identity, and what the last stage made of it or why it failed.
+
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use crate::cancel::Cancel;
+use crate::stages::{ModelError, Stage};
+use crate::store::Hash;
+
+/// A model on its way; a failure travels as data.
+pub struct Parcel<T> {
+    pub job: std::sync::Arc<Job>,
+    pub load: Result<T, ModelError>,
+}
+
+/// One model's passage through the pipeline.
+#[derive(Debug)]
+pub struct Job {
+    /// Position in the order of reading.
+    pub number: u64,
+    pub id: String,
+    pub hash: Hash,
+    /// Size of the file.
+    pub bytes: u64,
+    /// Tells the stages to stop.
+    pub cancel: Cancel,
+    clock: Mutex<Clock>,
+}
+
+/// Seconds a model took, stage by stage in the order of [`Stage::ALL`].
+pub type Seconds = [f64; Stage::ALL.len()];
+
+#[derive(Debug, Default)]
+struct Clock {
+    spent: Seconds,
+    running: Option<(Stage, Instant)>,
+    overdue: bool,
+}
+
+impl Job {
+    /// A model that has not started.
+    pub fn new(number: u64, id: String, hash: Hash, bytes: u64) -> Self {
+        Self { number, id, hash, bytes, cancel: Cancel::new(), clock: Mutex::default() }
+    }
+
+    /// The seconds spent so far in stages that ended.
+    pub fn seconds(&self) -> Seconds {
+        self.clock().spent
+    }
+
+    /// Starts the clock of a stage.
+    pub fn start(&self, stage: Stage) {
+        self.clock().running = Some((stage, Instant::now()));
+    }
+
+    /// Stops the clock; true where the model had been found overdue.
+    pub fn stop(&self) -> bool {
+        let mut clock = self.clock();
+        if let Some((stage, since)) = clock.running.take() {
+            clock.spent[stage as usize] += since.elapsed().as_secs_f64();
+        }
+        clock.overdue
+    }
+
+    /// The stage that is working on the model, and the seconds of all its stages until now.
+    pub fn running(&self) -> Option<(Stage, f64)> {
+        let clock = self.clock();
+        let (stage, since) = clock.running?;
+        Some((stage, clock.spent.iter().sum::<f64>() + since.elapsed().as_secs_f64()))
+    }
+
+    /// Cancels the model if it has been computed on for longer than `limit`.
+    pub fn check_deadline(&self, limit: Duration) {
+        let late = self.running().is_some_and(|(_, seconds)| seconds > limit.as_secs_f64());
+        if late {
+            self.clock().overdue = true;
+            self.cancel.cancel();
+        }
+    }
+
+    fn clock(&self) -> std::sync::MutexGuard<'_, Clock> {
+        // A panic while the clock is held leaves numbers, no broken state.
+        self.clock.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}

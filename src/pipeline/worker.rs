@@ -1,0 +1,197 @@
+//! The one worker that runs all eight stages, and the bench where models are worked on.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+
+use super::guard::guarded;
+use super::parcel::{Job, Parcel};
+use crate::stages::{ModelError, Stage};
+
+/// Takes parcels, works on those that have not failed, passes all of them on.
+pub fn work<I, O>(
+    stage: Stage,
+    bench: &Bench,
+    inbox: &Receiver<Parcel<I>>,
+    outbox: &Sender<Parcel<O>>,
+    step: &(dyn Fn(&Job, I) -> Result<O, ModelError> + Sync),
+) {
+    for Parcel { job, load } in inbox {
+        let load = load.and_then(|input| bench.work_on(stage, &job, || step(&job, input)));
+        if outbox.send(Parcel { job, load }).is_err() {
+            return; // nobody downstream: stop quietly
+        }
+    }
+}
+
+/// Where models are worked on: so many at the same time, each within its time.
+pub struct Bench {
+    /// One token for each model that may be worked on; taken and put back.
+    permits: (Sender<()>, Receiver<()>),
+    limit: Duration,
+    busy: [AtomicUsize; Stage::ALL.len()],
+    in_flight: Mutex<BTreeMap<u64, Arc<Job>>>,
+}
+
+impl Bench {
+    /// `places` models at the same time, `limit` for all stages of one model together.
+    pub fn new(places: usize, limit: Duration) -> Self {
+        let permits = bounded(places.max(1));
+        for _ in 0..places.max(1) {
+            // There is room for each of them: the channel was made that large.
+            let _ = permits.0.try_send(());
+        }
+        Self { permits, limit, busy: Default::default(), in_flight: Mutex::default() }
+    }
+
+    /// Runs a step of a model when a place is free; panics and passed deadlines become failures.
+    pub fn work_on<T>(
+        &self,
+        stage: Stage,
+        job: &Job,
+        step: impl FnOnce() -> Result<T, ModelError>,
+    ) -> Result<T, ModelError> {
+        let _permit = Permit::take(&self.permits);
+        self.busy[stage as usize].fetch_add(1, Ordering::Relaxed);
+        job.start(stage);
+        let result = guarded(stage, step);
+        let overdue = job.stop();
+        self.busy[stage as usize].fetch_sub(1, Ordering::Relaxed);
+        if overdue {
+            let limit = self.limit.as_secs_f64();
+            return Err(ModelError::new(stage, format!("time limit of {limit} s passed in stage {}", stage.name())));
+        }
+        result
+    }
+
+    /// A model sets out.
+    pub fn enter(&self, job: &Arc<Job>) {
+        self.jobs().insert(job.number, Arc::clone(job));
+    }
+
+    /// A model has arrived.
+    pub fn leave(&self, job: &Job) {
+        self.jobs().remove(&job.number);
+    }
+
+    /// Cancels the models whose time is over.
+    pub fn check_deadlines(&self) {
+        self.jobs().values().for_each(|job| job.check_deadline(self.limit));
+    }
+
+    /// Cancels all models in flight.
+    pub fn cancel_all(&self) {
+        self.jobs().values().for_each(|job| job.cancel.cancel());
+    }
+
+    /// Workers of a stage that are computing.
+    pub fn busy(&self, stage: Stage) -> usize {
+        self.busy[stage as usize].load(Ordering::Relaxed)
+    }
+
+    /// The model that has been computed on longest: its id, stage and seconds.
+    pub fn slowest(&self) -> Option<(String, Stage, f64)> {
+        let jobs = self.jobs();
+        let running = jobs.values().filter_map(|job| job.running().map(|(stage, seconds)| (job, stage, seconds)));
+        let slowest = running.max_by(|a, b| a.2.total_cmp(&b.2));
+        slowest.map(|(job, stage, seconds)| (job.id.clone(), stage, seconds))
+    }
+
+    fn jobs(&self) -> MutexGuard<'_, BTreeMap<u64, Arc<Job>>> {
+        // The map is whole even if a holder panicked: each change is one call.
+        self.in_flight.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A place at the bench, given back when dropped.
+struct Permit<'a>(&'a Sender<()>);
+
+impl<'a> Permit<'a> {
+    fn take((back, tokens): &'a (Sender<()>, Receiver<()>)) -> Self {
+        // Cannot fail: the bench holds both ends.
+        let _ = tokens.recv();
+        Self(back)
+    }
+}
+
+impl Drop for Permit<'_> {
+    fn drop(&mut self) {
+        // Cannot fail or wait: the token that was taken left its room.
+        let _ = self.0.try_send(());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Instant;
+
+    fn job(number: u64) -> Arc<Job> {
+        Arc::new(Job::new(number, format!("model {number}"), [0; 32], 0))
+    }
+
+    #[test]
+    fn failures_pass_through_and_panics_become_failures() {
+        let bench = Bench::new(2, Duration::from_secs(60));
+        let (feed, inbox) = bounded(8);
+        let (outbox, results) = bounded(8);
+        for (number, load) in [(0, Ok(4)), (1, Err(ModelError::new(Stage::Parse, "torn"))), (2, Ok(0)), (3, Ok(6))] {
+            feed.send(Parcel { job: job(number), load }).unwrap();
+        }
+        drop(feed);
+        work(Stage::Merge, &bench, &inbox, &outbox, &|_, divisor: i32| Ok(12 / divisor));
+        let loads: Vec<_> = results.try_iter().map(|parcel| parcel.load).collect();
+        assert_eq!((&loads[0], &loads[3]), (&Ok(3), &Ok(2)));
+        assert_eq!(loads[1], Err(ModelError::new(Stage::Parse, "torn")));
+        let bug = loads[2].as_ref().unwrap_err();
+        assert!(bug.stage == Stage::Merge && bug.why.contains("divide by zero"), "{bug}");
+    }
+
+    #[test]
+    fn no_more_models_are_worked_on_than_there_are_places() {
+        let bench = Bench::new(2, Duration::from_secs(60));
+        let (now, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        std::thread::scope(|scope| {
+            for number in 0..8 {
+                let (bench, now, most) = (&bench, &now, &most);
+                scope.spawn(move || {
+                    bench.work_on(Stage::Parse, &job(number), || {
+                        most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+                        std::thread::sleep(Duration::from_millis(5));
+                        now.fetch_sub(1, Ordering::SeqCst);
+                        Ok(())
+                    })
+                });
+            }
+        });
+        assert_eq!(most.into_inner(), 2);
+    }
+
+    #[test]
+    fn a_model_that_takes_too_long_is_cancelled_and_fails_with_the_limit() {
+        let bench = Bench::new(1, Duration::from_millis(20));
+        let slow = job(0);
+        bench.enter(&slow);
+        let result = std::thread::scope(|scope| {
+            let worker = scope.spawn(|| {
+                bench.work_on(Stage::Validate, &slow, || {
+                    let end = Instant::now() + Duration::from_secs(20);
+                    while Instant::now() < end {
+                        slow.cancel.check().map_err(|c| ModelError::cancelled(Stage::Validate, c))?;
+                        std::thread::sleep(Duration::from_millis(1));
+                    }
+                    Ok(())
+                })
+            });
+            while !worker.is_finished() {
+                bench.check_deadlines();
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            worker.join().unwrap()
+        });
+        assert_eq!(result.unwrap_err().why, "time limit of 0.02 s passed in stage validate");
+    }
+}
