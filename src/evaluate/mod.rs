@@ -1,1 +1,124 @@
-//! Scores of retrieval: precision-recall, measures, significance, and the report.
+//! How well descriptors retrieve: rankings, measures, significance, and the files and report that tell them.
+//!
+//! In: a store (or anybody's distance matrix) and labels. Out: an [`Evaluation`] and the files of [`write`].
+//! Method: every labelled model whose class has another member is a query against all other labelled models.
+//! The measures are the Princeton Shape Benchmark's (Shilane, Min, Kazhdan, Funkhouser 2004) and TREC's average
+//! precision; each is told in [`measures`] and [`precision_recall`], the tests in [`significance`].
+//! Cost: N^2 distances and N sorts for each method, in parallel, in memory for a few rows only.
+//! Does not promise: a verdict on models that failed to be read; they are counted as missing, not as misses.
+
+pub mod chance;
+pub mod formats;
+pub mod gallery;
+pub mod labels;
+pub mod measures;
+pub mod precision_recall;
+pub mod ranking;
+
+pub mod significance;
+
+pub mod summary;
+
+pub use gallery::Gallery;
+pub use labels::Labels;
+pub use ranking::{Entrant, QueryResult};
+
+pub use summary::Summary;
+
+use crate::error::Result;
+use significance::Comparison;
+
+/// What `eval` may be asked.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Names of the methods to evaluate ("symmetry", "cpca:phase"); a frame's name alone means both of its
+    /// descriptors. Empty: all that the store holds.
+    pub methods: Vec<String>,
+    /// Leave classes of one or two models out of all averages, as the Princeton tools do.
+    pub compat_psb: bool,
+    /// Hits kept of each query for the report's gallery; 10 fill one row on a wide screen.
+    pub hits: usize,
+    /// Sign flips drawn where there are too many to try all; 100,000 give a p-value of 0.05 to 0.0014.
+    pub draws: usize,
+    /// Resamplings for an interval; 10,000 is the custom for 95 % intervals.
+    pub resamples: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { methods: Vec::new(), compat_psb: false, hits: 10, draws: 100_000, resamples: 10_000, seed: 2014 }
+    }
+}
+
+/// The results of one method: its queries in the order of the gallery, and what they amount to.
+#[derive(Clone, Debug)]
+pub struct MethodResult {
+    pub name: String,
+    pub queries: Vec<QueryResult>,
+    pub summary: Summary,
+}
+
+/// The results of all methods on one gallery.
+#[derive(Clone, Debug)]
+pub struct Evaluation {
+    pub gallery: Gallery,
+    /// In the order they were given.
+    pub methods: Vec<MethodResult>,
+    /// The expected results of a random ranking.
+    pub chance: Summary,
+    /// The results of an ideal ranking; not all measures reach 1.
+    pub ceiling: Summary,
+    pub comparisons: Vec<Comparison>,
+    pub options: Options,
+}
+
+/// Scores `entrants`, each a distance on the models of `gallery`.
+///
+/// # Errors
+/// A distance that is not a number; a gallery without a single query.
+pub fn score(gallery: Gallery, entrants: &[Entrant], options: &Options) -> Result<Evaluation> {
+    gallery.require_queries()?;
+    let mut methods = Vec::with_capacity(entrants.len());
+    for entrant in entrants {
+        let queries = ranking::run(&gallery, entrant, options.hits)?;
+        let summary = Summary::of(&gallery, queries.iter().map(|q| (q.query, &q.scores, &q.curves)));
+        methods.push(MethodResult { name: entrant.name.clone(), queries, summary });
+    }
+    let comparisons = significance::compare_all(&gallery, &methods, options);
+    let chance = chance::random(&gallery, options.seed);
+    let ceiling = chance::ideal(&gallery);
+    Ok(Evaluation { gallery, methods, chance, ceiling, comparisons, options: options.clone() })
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::gallery::tests::gallery;
+    use super::*;
+
+    /// Two classes of three on a line, found by their places ("good") and by the order of their names ("bad").
+    pub(crate) fn toy() -> Evaluation {
+        let places = [0.0, 1.0, 2.0, 10.0, 11.0, 12.0];
+        let mixed = [0.0, 10.0, 20.0, 1.0, 11.0, 21.0];
+        let on = |places: [f64; 6]| Box::new(move |a: usize, b: usize| (places[a] - places[b]).abs());
+        let entrants = [
+            Entrant { name: "good".into(), distance: on(places) },
+            Entrant { name: "bad".into(), distance: on(mixed) },
+        ];
+        let options = Options { resamples: 200, ..Options::default() };
+        score(gallery(&["a", "a", "a", "b", "b", "b"]), &entrants, &options).unwrap()
+    }
+
+    #[test]
+    fn a_perfect_ranking_reaches_the_ceiling_and_a_mixed_one_does_not() {
+        let evaluation = toy();
+        assert_eq!(evaluation.methods[0].summary, evaluation.ceiling);
+        assert_eq!(evaluation.methods[1].summary.micro.nn, 0.0);
+        let comparison = &evaluation.comparisons[0];
+        assert!(comparison.mean_difference > 0.4);
+        // 2 of 2^6 sign flips of queries, 2 of 2^2 of classes
+        assert_eq!((comparison.p_query, comparison.p_class, comparison.p_holm), (2.0 / 64.0, 0.5, 0.5));
+    }
+}
