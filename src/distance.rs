@@ -1,1 +1,130 @@
 //! How far apart two descriptors are (the paper's eq. 8): a dissimilarity, smaller is more alike.
+//!
+//! All functions take the descriptors as the store holds them, one row of numbers a model, and add up in f64. They
+//! are symmetric to the last bit. Rows of different lengths are compared over the shorter one's views.
+//!
+//! Magnitude rows: three views of K magnitudes. Phase rows: three views of two starting points of K complex numbers.
+//!
+//! The axes of a frame have no sign, so a phase distance is the least over the 8 choices of signs. View i has axis
+//! i + 1 to the right and axis i + 2 up. Turning the axis to the right around mirrors the picture: the contour then
+//! starts at the other starting point and runs backwards, and a real signal run backwards has the conjugate
+//! coefficients. Turning the axis upwards around keeps the starting point and runs backwards. Hence the coefficients
+//! after turning (right, up) are those of start `right`, conjugate if exactly one of the two was turned. Both
+//! starting points are compared, which makes the distance symmetric and halves the harm of a start that jumps.
+
+/// Distance of two magnitude rows: the sum of the views' Euclidean distances, views in order (eq. 8).
+pub fn magnitude(a: &[f32], b: &[f32]) -> f64 {
+    magnitude_views(a, b).iter().sum()
+}
+
+/// The Euclidean distances of the three views of two magnitude rows.
+pub fn magnitude_views(a: &[f32], b: &[f32]) -> [f64; 3] {
+    [0, 1, 2].map(|i| euclidean(view(a, i), view(b, i)))
+}
+
+/// The least of [`magnitude`] and the same with the second and third view of one row swapped.
+pub fn magnitude_swapped(a: &[f32], b: &[f32]) -> f64 {
+    let [first, second, third] = magnitude_views(a, b);
+    let crossed = [euclidean(view(a, 1), view(b, 2)), euclidean(view(a, 2), view(b, 1))];
+    first + (second + third).min(crossed[0] + crossed[1])
+}
+
+/// Distance of two phase rows: the least sum of the views' distances over the 8 signs of the axes.
+pub fn phase(a: &[f32], b: &[f32]) -> f64 {
+    phase_views(a, b).iter().sum()
+}
+
+/// The distances of the three views of two phase rows under the best signs of the axes.
+pub fn phase_views(a: &[f32], b: &[f32]) -> [f64; 3] {
+    let turned = [0, 1, 2].map(|i| view_under_turns(view(a, i), view(b, i)));
+    let mut best = ([f64::INFINITY; 3], f64::INFINITY);
+    for signs in 0..8_usize {
+        let flipped = |axis: usize| signs >> (axis % 3) & 1;
+        let views = [0, 1, 2].map(|i| turned[i][flipped(i + 1)][flipped(i + 2)]);
+        let sum = views.iter().sum();
+        if sum < best.1 {
+            best = (views, sum);
+        }
+    }
+    best.0
+}
+
+/// The part of a row that belongs to a view.
+fn view(row: &[f32], i: usize) -> &[f32] {
+    let length = row.len() / 3;
+    &row[i * length..(i + 1) * length]
+}
+
+fn euclidean(a: &[f32], b: &[f32]) -> f64 {
+    a.iter().zip(b).map(|(p, q)| (f64::from(*p) - f64::from(*q)).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Distances of a view with the other's axes turned around: `[right][up]`.
+fn view_under_turns(a: &[f32], b: &[f32]) -> [[f64; 2]; 2] {
+    let (a, b) = (a.split_at(a.len() / 2), b.split_at(b.len() / 2));
+    let same = [squared_both(a.0, b.0), squared_both(a.1, b.1)];
+    let other = [squared_both(a.0, b.1), squared_both(a.1, b.0)];
+    let mean = |pairs: [[f64; 2]; 2], conjugate: usize| (0.5 * (pairs[0][conjugate] + pairs[1][conjugate])).sqrt();
+    [[mean(same, 0), mean(same, 1)], [mean(other, 1), mean(other, 0)]]
+}
+
+/// Squared distances of complex rows: as they are, and with one of them conjugate.
+fn squared_both(a: &[f32], b: &[f32]) -> [f64; 2] {
+    let (mut plain, mut conjugate) = (0.0, 0.0);
+    for (p, q) in a.chunks_exact(2).zip(b.chunks_exact(2)) {
+        let real = (f64::from(p[0]) - f64::from(q[0])).powi(2);
+        plain += real + (f64::from(p[1]) - f64::from(q[1])).powi(2);
+        conjugate += real + (f64::from(p[1]) + f64::from(q[1])).powi(2);
+    }
+    [plain, conjugate]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn magnitudes_add_up_the_views() {
+        // Two harmonics: views (3, 4), (0, 1), (2, 0) against zeros.
+        let a = [3.0, 4.0, 0.0, 1.0, 2.0, 0.0];
+        assert_eq!(magnitude_views(&a, &[0.0; 6]), [5.0, 1.0, 2.0]);
+        assert_eq!(magnitude(&a, &[0.0; 6]), 8.0);
+    }
+
+    #[test]
+    fn swapped_planes_are_forgiven() {
+        let a = [3.0, 4.0, 0.0, 1.0, 2.0, 0.0];
+        let b = [3.0, 4.0, 2.0, 0.0, 0.0, 1.0];
+        assert_eq!(magnitude_swapped(&a, &b), 0.0);
+        assert!((magnitude(&a, &b) - 2.0 * 5f64.sqrt()).abs() < 1e-15);
+    }
+
+    /// The row that turning axes around makes of a row of one harmonic, written out view by view.
+    fn turned(row: &[f32], flips: [bool; 3]) -> Vec<f32> {
+        let mut out = Vec::new();
+        for i in 0..3 {
+            let (right, up) = (flips[(i + 1) % 3], flips[(i + 2) % 3]);
+            for start in 0..2 {
+                let source = if right { 1 - start } else { start };
+                let [re, im] = [row[4 * i + 2 * source], row[4 * i + 2 * source + 1]];
+                out.extend([re, if right != up { -im } else { im }]);
+            }
+        }
+        out
+    }
+
+    proptest! {
+        #[test]
+        fn turned_axes_cost_nothing_and_distances_are_symmetric(
+            a in prop::collection::vec(-1.0f32..1.0, 12), b in prop::collection::vec(-1.0f32..1.0, 12), signs in 0u8..8,
+        ) {
+            let flips = [0, 1, 2].map(|i| signs >> i & 1 == 1);
+            prop_assert_eq!(phase(&a, &turned(&a, flips)), 0.0);
+            prop_assert_eq!(phase(&a, &b), phase(&b, &a));
+            prop_assert!((phase(&a, &b) - phase(&turned(&a, flips), &b)).abs() < 1e-12);
+            prop_assert_eq!(magnitude(&a, &b), magnitude(&b, &a));
+            prop_assert_eq!(magnitude_swapped(&a, &b), magnitude_swapped(&b, &a));
+        }
+    }
+}

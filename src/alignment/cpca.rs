@@ -1,0 +1,48 @@
+//! Continuous PCA (Vranic, Saupe and Richter 2001): the covariance of all points of the surface, not of samples.
+//!
+//! C = 1/(12 S) sum S_i [f(A_i) + f(B_i) + f(C_i) + 9 f(G_i)] with f(v) = (v - m)(v - m)^T, m the area centroid,
+//! G_i the centroid of triangle i and S_i its area: exact on triangles.
+
+use crate::brep::Mesh;
+use crate::geometry::{Matrix, Point, Vector};
+
+use super::{principal_axes, triangles};
+
+/// Principal axes of the surface, largest variance first.
+pub fn axes(mesh: &Mesh) -> [Vector; 3] {
+    principal_axes(&covariance(mesh))
+}
+
+/// Covariance of the surface's points about its area centroid, mm^2; zero for a mesh without area.
+pub fn covariance(mesh: &Mesh) -> Matrix {
+    let (mut total, mut moment) = (0.0, Vector::zeros());
+    for (corners, _, area) in triangles(mesh) {
+        total += area;
+        moment += centroid(&corners).coords * area;
+    }
+    if total <= 0.0 {
+        return Matrix::zeros();
+    }
+    let m = Point::from(moment / total);
+    let f = |p: &Point| (p - m) * (p - m).transpose();
+    let term = |c: &[Point; 3]| f(&c[0]) + f(&c[1]) + f(&c[2]) + 9.0 * f(&centroid(c));
+    triangles(mesh).map(|(corners, _, area)| area * term(&corners)).sum::<Matrix>() / (12.0 * total)
+}
+
+fn centroid(corners: &[Point; 3]) -> Point {
+    Point::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::alignment::shapes;
+
+    #[test]
+    fn the_covariance_of_a_rectangle_is_its_second_moment() {
+        // A flat 2 x 6 rectangle: variances 2^2 / 12 and 6^2 / 12.
+        let mesh = shapes::rectangle(2.0, 6.0);
+        let expected = Matrix::from_diagonal(&Vector::new(4.0 / 12.0, 36.0 / 12.0, 0.0));
+        assert!((covariance(&mesh) - expected).norm() < 1e-12);
+    }
+}

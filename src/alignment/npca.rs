@@ -1,0 +1,15 @@
+//! Normal PCA (Papadakis et al. 2007): principal axes of the surface normals, weighted by area.
+//!
+//! The normals of a closed surface average to zero; on open sheets we keep the mean at zero as well, which makes the
+//! result independent of the side that a sheet's normals point to.
+
+use crate::brep::Mesh;
+use crate::geometry::{Matrix, Vector};
+
+use super::{principal_axes, triangles};
+
+/// Principal axes of the normals, the direction that most area faces first.
+pub fn axes(mesh: &Mesh) -> [Vector; 3] {
+    let covariance: Matrix = triangles(mesh).map(|(_, normal, area)| area * normal * normal.transpose()).sum();
+    principal_axes(&covariance)
+}

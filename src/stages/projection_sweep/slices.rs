@@ -1,0 +1,327 @@
+//! Projected areas by exact spans.
+//!
+//! The mesh is cut once, by planes across the reference axis. In a slice, every connected piece of the cut casts one
+//! unbroken shadow on any line, so a piece is as good as its convex hull, and the shadow of the slice is a union of
+//! few intervals. Walking round the hulls gives the shadows in all directions at hardly more than the price of one.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::brep::Mesh;
+use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::{Point, Vector};
+
+use super::curve::Shadows;
+use super::reference::Turntable;
+
+/// Edge crossings held at a time by one worker: bounds the memory at some 100 MB.
+const CROSSINGS: usize = 1 << 20;
+
+/// A point of a cut: (along u, along v) of the turntable, mm.
+type Flat = [f64; 2];
+
+/// The convex hulls of the pieces of every slice.
+pub struct Slices {
+    thickness: f64,
+    slices: Vec<Slice>,
+}
+
+/// The pieces of the cut at one height: convex hulls, counter-clockwise, one after the other.
+#[derive(Clone, Debug, Default)]
+struct Slice {
+    points: Vec<Flat>,
+    hulls: Vec<Range<usize>>,
+}
+
+impl Slices {
+    /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
+    pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
+        let count = count.clamp(1, 65_536) as usize;
+        let heights: Vec<f64> = mesh.points.iter().map(|p| table.axis.dot(&(p - table.centre))).collect();
+        let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &z| (l.min(z), h.max(z)));
+        let thickness = (high - low) / count as f64;
+        if !(thickness > 0.0 && thickness.is_finite()) {
+            return Ok(Self { thickness: 0.0, slices: Vec::new() });
+        }
+        let wire = Wire::new(mesh, table, low, thickness, count);
+        let crossings: usize = wire.edges.iter().map(|e| wire.span(e, 0..count).len()).sum();
+        let block = (count * CROSSINGS / crossings.max(CROSSINGS)).max(1);
+        let blocks: Vec<_> = (0..count).step_by(block).map(|s| s..(s + block).min(count)).collect();
+        let cut = |b: &Range<usize>| cancel.check().map(|()| wire.cut(b.clone()));
+        let parts: Vec<_> = match blocks.as_slice() {
+            [one] => vec![cut(one)?],
+            many => many.par_iter().map(cut).collect::<Result<_, _>>()?,
+        };
+        Ok(Self { thickness, slices: parts.into_iter().flatten().collect() })
+    }
+}
+
+impl Shadows for Slices {
+    fn areas(&mut self, angles: &[f64], cancel: &Cancel) -> Result<Vec<f64>, Cancelled> {
+        let directions: Vec<Flat> = angles.iter().map(|a| [-a.sin(), a.cos()]).collect();
+        let mut areas = vec![0.0; angles.len()];
+        let mut walkers = Vec::new();
+        for slice in &self.slices {
+            cancel.check()?;
+            slice.start(directions[0], &mut walkers);
+            for (area, &direction) in areas.iter_mut().zip(&directions) {
+                *area += self.thickness * shadow_length(&slice.points, &mut walkers, direction);
+            }
+        }
+        Ok(areas)
+    }
+}
+
+/// The interval that a hull covers in a direction that turns counter-clockwise, with the points that bound it.
+struct Walker {
+    hull: Range<usize>,
+    lowest: usize,
+    highest: usize,
+    low: f64,
+    high: f64,
+}
+
+impl Slice {
+    /// Stands at the extreme points of every hull in a direction.
+    fn start(&self, direction: Flat, walkers: &mut Vec<Walker>) {
+        let along = |i: &usize| dot(self.points[*i], direction);
+        let stand = |hull: &Range<usize>| {
+            let lowest = hull.clone().min_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(hull.start);
+            let highest = hull.clone().max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(hull.start);
+            Walker { hull: hull.clone(), lowest, highest, low: 0.0, high: 0.0 }
+        };
+        walkers.clear();
+        walkers.extend(self.hulls.iter().map(stand));
+    }
+}
+
+impl Walker {
+    /// Walks on to the extreme points in a direction at most half a turn after the last.
+    fn turn(&mut self, points: &[Flat], direction: Flat) {
+        let next = |i: usize| if i + 1 == self.hull.end { self.hull.start } else { i + 1 };
+        self.high = dot(points[self.highest], direction);
+        self.low = dot(points[self.lowest], direction);
+        for _ in 0..self.hull.len() {
+            let ahead = dot(points[next(self.highest)], direction);
+            if ahead <= self.high {
+                break;
+            }
+            (self.highest, self.high) = (next(self.highest), ahead);
+        }
+        for _ in 0..self.hull.len() {
+            let ahead = dot(points[next(self.lowest)], direction);
+            if ahead >= self.low {
+                break;
+            }
+            (self.lowest, self.low) = (next(self.lowest), ahead);
+        }
+    }
+}
+
+/// Length of the union of the hulls' intervals in a direction.
+fn shadow_length(points: &[Flat], walkers: &mut [Walker], direction: Flat) -> f64 {
+    walkers.iter_mut().for_each(|w| w.turn(points, direction));
+    walkers.sort_unstable_by(|a, b| a.low.total_cmp(&b.low));
+    let (mut length, mut covered) = (0.0, f64::NEG_INFINITY);
+    for w in walkers.iter() {
+        if w.high > covered {
+            length += w.high - w.low.max(covered);
+            covered = w.high;
+        }
+    }
+    length
+}
+
+fn dot(a: Flat, b: Flat) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// The mesh as vertices with their level (the first slice at or above them), edges and triangles of edges.
+struct Wire {
+    vertices: Vec<WireVertex>,
+    /// Lower and upper vertex.
+    edges: Vec<[u32; 2]>,
+    /// The three edges of each triangle.
+    triangles: Vec<[u32; 3]>,
+    low: f64,
+    thickness: f64,
+}
+
+struct WireVertex {
+    at: Flat,
+    height: f64,
+    level: usize,
+}
+
+impl Wire {
+    fn new(mesh: &Mesh, table: &Turntable, low: f64, thickness: f64, count: usize) -> Self {
+        let (vertices, ids) = weld(mesh, |p| {
+            let d = p - table.centre;
+            let height = table.axis.dot(&d);
+            let level = ((height - low) / thickness - 0.5).ceil().clamp(0.0, count as f64) as usize;
+            WireVertex { at: [table.u.dot(&d), table.v.dot(&d)], height, level }
+        });
+        let mut wire = Self { vertices, edges: Vec::new(), triangles: Vec::new(), low, thickness };
+        let mut known = FxHashMap::default();
+        for triangle in &mesh.triangles {
+            let [a, b, c] = triangle.map(|i| ids[i as usize]);
+            if a != b && b != c && c != a {
+                let edges = [[a, b], [b, c], [c, a]].map(|e| wire.edge(e, &mut known));
+                wire.triangles.push(edges);
+            }
+        }
+        wire
+    }
+
+    fn edge(&mut self, [a, b]: [u32; 2], known: &mut FxHashMap<[u32; 2], u32>) -> u32 {
+        let height = |i: u32| self.vertices[i as usize].height;
+        let (lower, upper) = if (height(a), a) <= (height(b), b) { (a, b) } else { (b, a) };
+        let next = self.edges.len() as u32;
+        *known.entry([lower, upper]).or_insert_with(|| {
+            self.edges.push([lower, upper]);
+            next
+        })
+    }
+
+    /// The slices of `block` that an edge crosses.
+    fn span(&self, edge: &[u32; 2], block: Range<usize>) -> Range<usize> {
+        let [lower, upper] = edge.map(|i| self.vertices[i as usize].level);
+        let start = lower.max(block.start);
+        start..upper.min(block.end).max(start)
+    }
+
+    /// Cuts the slices of a block.
+    fn cut(&self, block: Range<usize>) -> Vec<Slice> {
+        let crossings = Crossings::new(self, &block);
+        let mut pieces: Vec<_> = crossings.pieces();
+        let mut slices = vec![Slice::default(); block.len()];
+        for (slice, points) in &mut pieces {
+            let slice = &mut slices[*slice - block.start];
+            let start = slice.points.len();
+            push_hull(points, &mut slice.points);
+            slice.hulls.push(start..slice.points.len());
+        }
+        slices
+    }
+
+    /// Where an edge crosses a slice.
+    fn crossing(&self, edge: &[u32; 2], slice: usize) -> Flat {
+        let [a, b] = edge.map(|i| &self.vertices[i as usize]);
+        let height = self.low + (slice as f64 + 0.5) * self.thickness;
+        let share = ((height - a.height) / (b.height - a.height)).clamp(0.0, 1.0);
+        [a.at[0] + share * (b.at[0] - a.at[0]), a.at[1] + share * (b.at[1] - a.at[1])]
+    }
+}
+
+/// One vertex for all points with the same coordinates, and the vertex of each point.
+fn weld(mesh: &Mesh, vertex: impl Fn(&Point) -> WireVertex) -> (Vec<WireVertex>, Vec<u32>) {
+    let mut known = FxHashMap::default();
+    let mut vertices = Vec::new();
+    let mut id = |p: &Point| {
+        let plus_zero: Vector = p.coords.map(|c| c + 0.0); // -0 and 0 are the same place
+        *known.entry([plus_zero.x.to_bits(), plus_zero.y.to_bits(), plus_zero.z.to_bits()]).or_insert_with(|| {
+            vertices.push(vertex(p));
+            vertices.len() as u32 - 1
+        })
+    };
+    let ids = mesh.points.iter().map(&mut id).collect();
+    (vertices, ids)
+}
+
+/// All crossings of edges with the slices of a block, edge by edge, joined into connected pieces.
+struct Crossings {
+    points: Vec<Flat>,
+    slices: Vec<u32>,
+    parents: Vec<u32>,
+}
+
+impl Crossings {
+    fn new(wire: &Wire, block: &Range<usize>) -> Self {
+        let mut all = Self { points: Vec::new(), slices: Vec::new(), parents: Vec::new() };
+        let mut starts = Vec::with_capacity(wire.edges.len());
+        for edge in &wire.edges {
+            starts.push(all.points.len());
+            for slice in wire.span(edge, block.clone()) {
+                all.parents.push(all.points.len() as u32);
+                all.slices.push(slice as u32);
+                all.points.push(wire.crossing(edge, slice));
+            }
+        }
+        for triangle in &wire.triangles {
+            all.join_triangle(wire, block, triangle, &starts);
+        }
+        all
+    }
+
+    /// In every slice that a triangle crosses, its two crossings are connected.
+    fn join_triangle(&mut self, wire: &Wire, block: &Range<usize>, triangle: &[u32; 3], starts: &[usize]) {
+        let mut sides = triangle.map(|e| (wire.span(&wire.edges[e as usize], block.clone()), starts[e as usize]));
+        sides.sort_unstable_by_key(|(span, _)| std::cmp::Reverse(span.len()));
+        let [(long, at_long), others @ ..] = sides;
+        for (span, at) in others {
+            for slice in span.clone() {
+                self.join((at_long + slice - long.start) as u32, (at + slice - span.start) as u32);
+            }
+        }
+    }
+
+    fn root(&mut self, mut i: u32) -> u32 {
+        while self.parents[i as usize] != i {
+            let above = self.parents[self.parents[i as usize] as usize];
+            self.parents[i as usize] = above;
+            i = above;
+        }
+        i
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+
+    /// The points of each piece with the slice it lies in, in order of their first crossing.
+    fn pieces(mut self) -> Vec<(usize, Vec<Flat>)> {
+        let mut piece_of = vec![u32::MAX; self.points.len()];
+        let mut pieces: Vec<(usize, Vec<Flat>)> = Vec::new();
+        for i in 0..self.points.len() {
+            let root = self.root(i as u32) as usize;
+            if piece_of[root] == u32::MAX {
+                piece_of[root] = pieces.len() as u32;
+                pieces.push((self.slices[i] as usize, Vec::new()));
+            }
+            pieces[piece_of[root] as usize].1.push(self.points[i]);
+        }
+        pieces
+    }
+}
+
+/// Appends the convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain).
+fn push_hull(points: &mut Vec<Flat>, hull: &mut Vec<Flat>) {
+    points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    points.dedup();
+    let base = hull.len();
+    if points.len() < 3 {
+        hull.extend_from_slice(points);
+        return;
+    }
+    push_chain(points.iter(), base, hull);
+    let upper = hull.len() - 1;
+    hull.truncate(upper);
+    push_chain(points.iter().rev(), upper, hull);
+    hull.pop();
+}
+
+fn push_chain<'a>(points: impl Iterator<Item = &'a Flat>, base: usize, hull: &mut Vec<Flat>) {
+    for &p in points {
+        while hull.len() >= base + 2 && turns_right(hull[hull.len() - 2], hull[hull.len() - 1], p) {
+            hull.pop();
+        }
+        hull.push(p);
+    }
+}
+
+fn turns_right(a: Flat, b: Flat, c: Flat) -> bool {
+    (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 0.0
+}
