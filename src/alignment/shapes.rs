@@ -13,6 +13,7 @@ pub fn mesh(points: Vec<Point>, triangles: Vec<[u32; 3]>) -> Mesh {
         points: 0..mesh.points.len() as u32,
         triangles: 0..mesh.triangles.len() as u32,
         area: area(&mesh),
+        flux: 0.0,
         centroid: centroid(&mesh),
     };
     mesh.faces.push(face);
