@@ -84,6 +84,12 @@ def chord_params(points):
     return [0.0] + [sum(steps[:i + 1]) / total for i in range(len(steps) - 1)] + [1.0]
 
 
+def mean_chord_params(rows):
+    """Parameters in [0, 1] from the mean chord of the columns: steps that only widen a section count too."""
+    steps = np.linalg.norm(np.diff(rows, axis=0), axis=2).mean(axis=1)
+    return [0.0] + list(np.cumsum(steps)[:-1] / steps.sum()) + [1.0]
+
+
 def half_columns(centre, side, up, down, sign):
     """Five control points of the half section on one side: top, corner, side, corner, bottom."""
     c, s, u, d = (np.asarray(x, float) for x in (centre, side, up, down))
@@ -98,10 +104,10 @@ def skin(sections, square=0.0):
     """
     sections = [(s[0], s[1], s[2], s[3] if len(s) > 3 else [-c for c in s[2]]) for s in sections]
     weights = [1.0, ROUND + square * 3, 1.0, ROUND + square * 3, 1.0]
-    params = chord_params([s[0] for s in sections])
+    both = [np.array([half_columns(*s, sign) for s in sections]) for sign in (1, -1)]
+    params = mean_chord_params(np.concatenate(both, axis=1))
     faces = []
-    for sign in (1, -1):
-        rows = np.array([half_columns(*s, sign) for s in sections])
+    for rows in both:
         net, degree, knots = interpolating_rows(rows, params)
         faces.append(surface_face(net, weights, degree, knots, 2, [0, 0, 0, 0.5, 0.5, 1, 1, 1]))
     for end in (sections[0], sections[-1]):
@@ -165,11 +171,15 @@ AIRFOIL = [(1.0, 0.0), (0.7, 0.42), (0.3, 0.95), (0.08, 0.62), (0.0, 0.0), (0.08
 
 
 def airfoil(leading, chord, thick, up=(0, 0, 1), twist=0.0):
-    """A closed airfoil wire from the leading edge backwards (-x); `thick` is about half its thickness."""
+    """A closed airfoil wire from the leading edge backwards (-x); `thick` is about half its thickness.
+
+    It is cambered, except where it stands upright (up along y): a fin is symmetric.
+    """
+    shape = [(c, abs(h) if i < 4 else -abs(AIRFOIL[8 - i][1])) for i, (c, h) in enumerate(AIRFOIL)] if up[1] else AIRFOIL
     cos, sin = math.cos(math.radians(twist)), math.sin(math.radians(twist))
     back = np.array((-cos, 0, 0)) + sin * np.asarray(up, float)
     lift = np.asarray(up, float) * cos + np.array((sin, 0, 0))
-    points = [np.asarray(leading, float) + back * c * chord + lift * h * thick for c, h in AIRFOIL]
+    points = [np.asarray(leading, float) + back * c * chord + lift * h * thick for c, h in shape]
     return wire_of(spline_edge(points[:5]), spline_edge(points[4:]))
 
 
@@ -186,13 +196,8 @@ def pair(shape):
 
 # ---- hulls -------------------------------------------------------------------------------------------------
 
-def hull(stations, closed_stern=True):
-    """A boat hull from stations (x, half beam, deck height, keel height, fullness), stern first.
-
-    `fullness` in [0, 1] goes from a V to a U section. A station of half beam 0 is a stem on the centre plane. The
-    deck is ruled between the sheer lines, a stern with a beam is closed by a flat transom.
-    """
-    params = chord_params([(s[0], 0, 0) for s in stations])
+def hull_skin(stations, params):
+    """The faces of a hull without its deck, the control nets of its two halves, their degree and knots along x."""
     halves, nets = [], []
     for sign in (1, -1):
         rows = np.array([[(x, sign * b, deck), (x, sign * b * (0.7 + 0.3 * full), keel + (deck - keel) * (0.55 - 0.5 * full)),
@@ -201,9 +206,32 @@ def hull(stations, closed_stern=True):
         net, degree, knots = interpolating_rows(rows, params)
         nets.append(net)
         halves.append(surface_face(net, None, degree, knots, 3, [0] * 4 + [1] * 4))
-    sheer = np.stack([nets[0][:, 0], nets[1][:, 0]], axis=1)
-    faces = halves + [surface_face(sheer, None, degree, knots, 1, [0, 0, 1, 1])]
     if stations[0][1] > 0:
         stern = np.stack([nets[0][0], nets[1][0]])
-        faces.append(surface_face(stern, None, 1, [0, 0, 1, 1], 3, [0] * 4 + [1] * 4))
+        halves.append(surface_face(stern, None, 1, [0, 0, 1, 1], 3, [0] * 4 + [1] * 4))
+    return halves, nets, degree, knots
+
+
+def hull(stations):
+    """A boat hull from stations (x, half beam, deck height, keel height, fullness), stern first.
+
+    `fullness` in [0, 1] goes from a V to a U section. A station of half beam 0 is a stem on the centre plane. The
+    deck is ruled between the sheer lines, a stern with a beam is closed by a flat transom.
+    """
+    faces, nets, degree, knots = hull_skin(stations, chord_params([(s[0], 0, 0) for s in stations]))
+    sheer = np.stack([nets[0][:, 0], nets[1][:, 0]], axis=1)
+    return sewn(faces + [surface_face(sheer, None, degree, knots, 1, [0, 0, 1, 1])])
+
+
+def open_hull(outer, inner):
+    """An open boat between two hulls of as many stations each, joined by a gunwale."""
+    params = chord_params([(s[0], 0, 0) for s in outer])
+    (faces, nets, degree, knots), (inside, cores, _, _) = hull_skin(outer, params), hull_skin(inner, params)
+    faces = faces + inside
+    for net, core in zip(nets, cores):
+        rail = np.stack([net[:, 0], core[:, 0]], axis=1)
+        faces.append(surface_face(rail, None, degree, knots, 1, [0, 0, 1, 1]))
+    if outer[0][1] > 0:
+        top = np.array([[nets[0][0, 0], nets[1][0, 0]], [cores[0][0, 0], cores[1][0, 0]]])
+        faces.append(surface_face(top, None, 1, [0, 0, 1, 1], 1, [0, 0, 1, 1]))
     return sewn(faces)

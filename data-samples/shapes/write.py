@@ -4,6 +4,7 @@ import re
 
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
+from OCP.Message import Message
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import (STEPControl_AsIs, STEPControl_Controller, STEPControl_Reader, STEPControl_Writer)
 from OCP.TCollection import TCollection_ExtendedString
@@ -15,6 +16,8 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 SCHEMAS = {"AP203": "AP203", "AP214": "AP214IS", "AP242": "AP242DIS"}
 UNITS = {"mm": "MM", "cm": "CM", "m": "M", "inch": "INCH"}
 STAMP = "2026-01-01T00:00:00"
+
+Message.DefaultMessenger_s().ChangePrinters().Clear()  # the kernel reports every transfer on standard output
 
 
 def prepare(schema, unit, pcurves):
