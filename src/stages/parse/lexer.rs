@@ -1,0 +1,275 @@
+//! One pass over the bytes: where each instance starts and what type it has.
+//!
+//! Nothing is decoded or copied: 16 bytes an instance, whatever the order of the ids.
+
+use memchr::{memchr, memchr_iter, memchr3, memmem};
+
+use super::keyword::Kind;
+use crate::cancel::{Cancel, Cancelled};
+
+/// How many statements pass between two looks at the cancel flag.
+const CHECK_EVERY: usize = 1 << 14;
+/// The longest keyword that is compared: longer ones are of no known type.
+const LONGEST_KEYWORD: usize = 80;
+/// Offsets are kept in 56 bits, beside the 8 bits of the kind.
+const LONGEST_FILE: usize = 1 << 56;
+
+/// An instance: its number, where the text after `=` starts, and its kind.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub id: u64,
+    start_and_kind: u64,
+}
+
+impl Entry {
+    fn new(id: u64, start: usize, kind: Kind) -> Self {
+        Self { id, start_and_kind: (start as u64) << 8 | u64::from(kind.code()) }
+    }
+
+    pub fn start(self) -> usize {
+        (self.start_and_kind >> 8) as usize
+    }
+
+    pub fn kind(self) -> Kind {
+        Kind::from_code((self.start_and_kind & 0xff) as u8)
+    }
+}
+
+/// What one pass over the file found.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    /// All complete instances by ascending id, each id once.
+    pub entries: Vec<Entry>,
+    /// Where the parameters of FILE_SCHEMA start.
+    pub schema: Option<usize>,
+    /// Whether the file starts or ends as Part 21 says.
+    pub marked: bool,
+    pub warnings: Vec<String>,
+}
+
+/// Finds all instances of all DATA sections, and what lies outside of any section too.
+pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
+    let bytes = &bytes[..bytes.len().min(LONGEST_FILE)];
+    let mut table = Table { entries: Vec::with_capacity(bytes.len() / 96), ..Table::default() };
+    let mut broken_strings = 0_usize;
+    let (mut at, mut count, mut ended) = (0, 0, false);
+    loop {
+        count += 1;
+        if count % CHECK_EVERY == 0 {
+            cancel.check()?;
+        }
+        at = skip_space(bytes, at);
+        if at >= bytes.len() || ended {
+            break;
+        }
+        match statement_end(bytes, at) {
+            End::Semicolon(end) => {
+                ended = add_statement(bytes, at, &mut table);
+                at = end + 1;
+            }
+            End::BrokenString(resume) => {
+                broken_strings += 1;
+                at = resume;
+            }
+            End::File => {
+                let tail = String::from_utf8_lossy(&bytes[at..bytes.len().min(at + 40)]).into_owned();
+                table.warnings.push(format!("truncated: the last statement does not end: {}", tail.escape_default()));
+                break;
+            }
+        }
+    }
+    if broken_strings > 0 {
+        table.warnings.push(format!("{broken_strings} statements with a string that does not end were left out"));
+    }
+    if !ended {
+        table.warnings.push("the end marker END-ISO-10303-21 is missing".into());
+    }
+    sort(&mut table);
+    Ok(table)
+}
+
+/// Takes note of the statement at `at`; true for the end marker.
+fn add_statement(bytes: &[u8], at: usize, table: &mut Table) -> bool {
+    if bytes[at] == b'#' {
+        if let Some((id, start)) = instance(bytes, at) {
+            table.entries.push(Entry::new(id, start, kind_at(bytes, start).0));
+        }
+        return false;
+    }
+    let mut buffer = [0; LONGEST_KEYWORD];
+    let (length, after) = keyword(bytes, at, &mut buffer);
+    match &buffer[..length] {
+        b"END-ISO-10303-21" => {
+            table.marked = true;
+            true
+        }
+        b"ISO-10303-21" => {
+            table.marked = true;
+            false
+        }
+        b"FILE_SCHEMA" => {
+            table.schema.get_or_insert(after);
+            false
+        }
+        _ => false,
+    }
+}
+
+/// The number and the start of the text after `=` of an instance at `#`.
+fn instance(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
+    let (id, digits_end) = number(bytes, at + 1)?;
+    let equals = skip_space(bytes, digits_end);
+    if bytes.get(equals) != Some(&b'=') {
+        return None;
+    }
+    Some((id, skip_space(bytes, equals + 1)))
+}
+
+/// An unsigned decimal number at `at` and the place behind it.
+pub(super) fn number(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
+    let mut end = at;
+    let mut value = 0_u64;
+    while let Some(digit) = bytes.get(end).filter(|b| b.is_ascii_digit()) {
+        value = value.checked_mul(10)?.checked_add(u64::from(digit - b'0'))?;
+        end += 1;
+    }
+    (end > at).then_some((value, end))
+}
+
+/// The kind of the record at `at` and the place behind its keyword (for complex instances: behind the parenthesis).
+pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
+    if bytes.get(at) == Some(&b'(') {
+        return (Kind::Complex, at + 1);
+    }
+    let rest = &bytes[at.min(bytes.len())..];
+    let length = rest.iter().take_while(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || **b == b'_').count();
+    if rest.get(length) == Some(&b'(') {
+        return (Kind::of(&rest[..length]), at + length);
+    }
+    let mut buffer = [0; LONGEST_KEYWORD];
+    let (length, after) = keyword(bytes, at, &mut buffer);
+    (Kind::of(&buffer[..length]), after)
+}
+
+/// Copies the keyword at `at` in upper case without the spaces and line breaks inside; its length, and the place behind.
+fn keyword(bytes: &[u8], at: usize, buffer: &mut [u8; LONGEST_KEYWORD]) -> (usize, usize) {
+    let (mut length, mut end) = (0, at);
+    while length < LONGEST_KEYWORD {
+        end = skip_space(bytes, end);
+        match bytes.get(end) {
+            Some(b) if b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-') => {
+                buffer[length] = b.to_ascii_uppercase();
+                length += 1;
+                end += 1;
+            }
+            _ => break,
+        }
+    }
+    (length, end)
+}
+
+/// Behind white space, comments and print control directives (`\N\`, `\F\`).
+pub(super) fn skip_space(bytes: &[u8], mut at: usize) -> usize {
+    loop {
+        match bytes.get(at) {
+            Some(0..=b' ') => at += 1,
+            Some(b'/') if bytes.get(at + 1) == Some(&b'*') => {
+                at = memmem::find(&bytes[at + 2..], b"*/").map_or(bytes.len(), |n| at + n + 4);
+            }
+            Some(b'\\') if matches!(bytes.get(at + 1..at + 3), Some(b"N\\" | b"F\\")) => at += 3,
+            _ => return at,
+        }
+    }
+}
+
+/// How a statement ends.
+enum End {
+    Semicolon(usize),
+    /// A string runs over the start of another instance, which is here.
+    BrokenString(usize),
+    File,
+}
+
+/// The first semicolon outside strings and comments.
+fn statement_end(bytes: &[u8], mut at: usize) -> End {
+    while let Some(n) = memchr3(b';', b'\'', b'/', &bytes[at..]) {
+        let found = at + n;
+        match bytes[found] {
+            b';' => return End::Semicolon(found),
+            b'\'' => {
+                // A doubled quote inside a string ends it and at once begins it anew: no special case.
+                let end = memchr(b'\'', &bytes[found + 1..]).map_or(bytes.len(), |n| found + 1 + n);
+                if let Some(resume) = instance_in(bytes, found + 1, end) {
+                    return End::BrokenString(resume);
+                }
+                at = end + 1;
+            }
+            _ if bytes.get(found + 1) == Some(&b'*') => at = skip_space(bytes, found),
+            _ => at = found + 1,
+        }
+        if at >= bytes.len() {
+            break;
+        }
+    }
+    End::File
+}
+
+/// The first line of `bytes[from..to]` that starts as an instance does: then this is no string.
+fn instance_in(bytes: &[u8], from: usize, to: usize) -> Option<usize> {
+    let starts = memchr_iter(b'\n', &bytes[from..to]).map(|n| skip_space(&bytes[..to], from + n + 1));
+    starts.into_iter().find(|&at| bytes.get(at) == Some(&b'#') && instance(&bytes[..to], at).is_some())
+}
+
+/// Sorts by id; of several instances with one id the first of the file stays.
+fn sort(table: &mut Table) {
+    let entries = &mut table.entries;
+    if !entries.is_sorted_by(|a, b| a.id < b.id) {
+        entries.sort_by_key(|e| (e.id, e.start_and_kind));
+        let before = entries.len();
+        entries.dedup_by_key(|e| e.id);
+        if entries.len() < before {
+            table.warnings.push(format!("{} instances repeat the number of another one", before - entries.len()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ids(text: &str) -> Vec<(u64, Kind)> {
+        let table = scan(text.as_bytes(), &Cancel::new()).unwrap();
+        table.entries.iter().map(|e| (e.id, e.kind())).collect()
+    }
+
+    #[test]
+    fn strings_and_comments_hide_semicolons() {
+        let text = "#2=PLANE('it''s; fine',#3);/* #9=LINE(); */ #1 = /* ; */ circle ( 'a/*b' ) ;";
+        assert_eq!(ids(text), [(1, Kind::Circle), (2, Kind::Plane)]);
+    }
+
+    #[test]
+    fn keywords_may_be_broken_over_lines() {
+        assert_eq!(ids("#1=CARTESIAN_\r\nPOINT('',(0.,0.,0.));"), [(1, Kind::CartesianPoint)]);
+    }
+
+    #[test]
+    fn a_truncated_file_keeps_what_was_complete() {
+        let table = scan(b"DATA;#1=PLANE('',#2);#2=AXIS2_PLA", &Cancel::new()).unwrap();
+        assert_eq!(table.entries.len(), 1);
+        assert!(table.warnings[0].starts_with("truncated"));
+    }
+
+    #[test]
+    fn an_open_string_costs_one_instance() {
+        assert_eq!(
+            ids("#1=PLANE('O'Brien',#2);\n#2=LINE('',#3);\n#3=CIRCLE('');"),
+            [(2, Kind::Line), (3, Kind::Circle)]
+        );
+    }
+
+    #[test]
+    fn complex_instances_and_repeated_ids() {
+        assert_eq!(ids("#7=(A()B());#7=PLANE();#3=FOO();"), [(3, Kind::Other), (7, Kind::Complex)]);
+    }
+}
