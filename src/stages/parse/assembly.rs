@@ -131,7 +131,7 @@ impl Walk<'_> {
     }
 
     /// Places the representations that nothing has placed, those that others map last; what was placed already is not
-    /// placed again, since views and validation properties name the same items.
+    /// placed again, since views and validation properties name the same items, as they name faces of shells.
     fn orphans(&mut self) {
         let mapped: FxHashSet<u64> = self.structure.mapped.iter().copied().collect();
         let structure = self.structure;
@@ -140,7 +140,7 @@ impl Walk<'_> {
         for id in first.into_iter().chain(last) {
             if !self.representations.placed.contains(&id) {
                 let mut items = prefer_brep(self.representations.expand(&[id], &Transform::identity()));
-                items.retain(|p| !known.contains(&p.item));
+                items.retain(|p| !known.contains(&p.item) && (known.is_empty() || p.kind != BodyKind::Bare));
                 known.extend(items.iter().map(|p| p.item));
                 self.placed.extend(items);
             }

@@ -87,17 +87,17 @@ fn collect(record: &Record, kind: Kind, structure: &mut Structure, found: &mut F
         | Kind::BoundedSurfaceRepresentation
         | Kind::BoundedWireframeRepresentation
         | Kind::TessellatedRepresentation
-        | Kind::AccurateTessellatedRepresentation => {
-            if structure.representations.last() != Some(&record.id) {
-                structure.representations.push(record.id);
-            }
+        | Kind::AccurateTessellatedRepresentation
+            if structure.representations.last() != Some(&record.id) =>
+        {
+            structure.representations.push(record.id);
         }
         Kind::RepresentationMap => structure.mapped.extend(mapped_representation(record)),
         Kind::NextAssemblyUsage => found.usages.extend(usage(record)),
-        Kind::RepresentationRelationship | Kind::ShapeRepresentationRelationship => {
-            if found.relations.last().map(|r| r.0) != Some(record.id) {
-                found.relations.extend(relation(record).map(|r| (record.id, r)));
-            }
+        Kind::RepresentationRelationship | Kind::ShapeRepresentationRelationship
+            if found.relations.last().map(|r| r.0) != Some(record.id) =>
+        {
+            found.relations.extend(relation(record).map(|r| (record.id, r)));
         }
         Kind::ShapeDefinitionRepresentation => found.shapes.extend(pair(record)),
         Kind::ContextDependentRepresentation => found.placements.extend(pair(record)),
