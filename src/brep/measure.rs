@@ -1,6 +1,7 @@
 //! Area, volume, centroid and bounding box of a model.
 
-use crate::geometry::{Aabb, Point, Tolerance};
+use super::{Mesh, Model};
+use crate::geometry::{Aabb, Point, Tolerance, Vector};
 
 /// What a model measures, in its own pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,4 +15,32 @@ pub struct Measures {
     pub bounds: Aabb,
     /// D = 2 max |p - centroid|.
     pub tolerance: Tolerance,
+}
+
+/// Measures a tessellated model. Area, centroid and volume come from the integrals over the true surfaces; the box
+/// and D from the points of the mesh. Without faces everything is 0 and the box is empty.
+pub fn measure(model: &Model, mesh: &Mesh) -> Measures {
+    let area: f64 = mesh.faces.iter().map(|f| f.area).sum();
+    let moment: Vector = mesh.faces.iter().map(|f| f.centroid.coords * f.area).sum();
+    let centroid = if area > 0.0 { Point::from(moment / area) } else { Point::origin() };
+    let farthest = mesh.points.iter().map(|p| (p - centroid).norm_squared()).fold(0.0, f64::max).sqrt();
+    let bounds = Aabb::of(&mesh.points);
+    Measures { area, volume: volume(model, mesh), centroid, bounds, tolerance: Tolerance::of(2.0 * farthest) }
+}
+
+/// The outer shell of each placed solid less its voids; the direction in which a file turns its shells is not trusted.
+fn volume(model: &Model, mesh: &Mesh) -> f64 {
+    let mut fluxes = vec![0.0; model.shells.len()];
+    let mut total = 0.0;
+    for of_one in mesh.faces.chunk_by(|a, b| a.occurrence == b.occurrence) {
+        let body = &model.bodies[model.occurrences[of_one[0].occurrence as usize].body.index()];
+        if !body.solid {
+            continue;
+        }
+        of_one.iter().for_each(|f| fluxes[model.faces[f.face.index()].shell as usize] += f.flux);
+        let sizes = body.shells.iter().map(|&s| fluxes[s as usize].abs());
+        total += sizes.enumerate().map(|(i, v)| if i == 0 { v } else { -v }).sum::<f64>();
+        body.shells.iter().for_each(|&s| fluxes[s as usize] = 0.0);
+    }
+    total
 }

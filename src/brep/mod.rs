@@ -7,9 +7,12 @@ pub mod curve;
 pub mod measure;
 pub mod mesh;
 pub mod nurbs;
+mod project;
 pub mod sample;
+pub mod simplify;
 pub mod surface;
 pub mod tessellate;
+pub mod topology;
 
 use std::sync::Arc;
 

@@ -1,6 +1,13 @@
-//! Non-uniform rational B-splines.
+//! Non-uniform rational B-splines: evaluation with derivatives, without allocation.
+//!
+//! Method: the recurrence of de Boor and Cox for the basis functions; derivatives from the basis functions one and
+//! two degrees lower; the quotient rule for rational ones (Piegl and Tiller, The NURBS Book, chapters 2 to 4).
 
-use crate::geometry::Point;
+use super::surface::Jet;
+use crate::geometry::{Point, Vector};
+
+/// The highest degree that can be evaluated; readers refuse higher ones.
+pub const MAX_DEGREE: usize = 25;
 
 /// A B-spline curve; knots are written out with their multiplicities (control points + degree + 1 of them).
 #[derive(Clone, Debug)]
@@ -26,4 +33,239 @@ pub struct NurbsSurface {
     pub points: Vec<Point>,
     /// Empty: all weights are 1.
     pub weights: Vec<f64>,
+}
+
+/// The basis functions that do not vanish at a parameter, with two derivatives.
+struct Basis {
+    /// Index of the first control point they belong to.
+    first: usize,
+    /// `values[d][j]`: d-th derivative of the j-th of them.
+    values: [[f64; MAX_DEGREE + 1]; 3],
+}
+
+impl Basis {
+    /// At `t`, clamped to the domain. Needs `degree <= MAX_DEGREE` and `count + degree + 1` knots.
+    fn at(knots: &[f64], degree: usize, count: usize, t: f64) -> Self {
+        let t = t.clamp(knots[degree], knots[count].max(knots[degree]));
+        let inner = &knots[degree + 1..count];
+        let span = degree + inner.partition_point(|&k| k <= t);
+        let span = last_filled_span(knots, degree, span);
+        let mut values = [[0.0; MAX_DEGREE + 1]; 3];
+        values[0][0] = 1.0;
+        for q in 1..=degree {
+            if q + 1 >= degree {
+                values[2] = differentiate(knots, span, q, &values[1]);
+                values[1] = differentiate(knots, span, q, &values[0]);
+            }
+            raise(knots, span, q, t, &mut values[0]);
+        }
+        Self { first: span - degree, values }
+    }
+}
+
+/// Goes back from an empty knot span (the end of the domain) to one that has a length.
+fn last_filled_span(knots: &[f64], degree: usize, mut span: usize) -> usize {
+    while span > degree && knots[span] >= knots[span + 1] {
+        span -= 1;
+    }
+    span
+}
+
+/// Basis functions of degree q - 1 -> degree q, in place.
+fn raise(knots: &[f64], span: usize, q: usize, t: f64, n: &mut [f64; MAX_DEGREE + 1]) {
+    let mut saved = 0.0;
+    for r in 0..q {
+        let (low, high) = (knots[span + 1 + r - q], knots[span + 1 + r]);
+        let share = if high > low { n[r] / (high - low) } else { 0.0 };
+        n[r] = saved + (high - t) * share;
+        saved = (t - low) * share;
+    }
+    n[q] = saved;
+}
+
+/// Functions (or their derivatives) of degree q - 1 -> derivatives of those of degree q.
+fn differentiate(knots: &[f64], span: usize, q: usize, n: &[f64; MAX_DEGREE + 1]) -> [f64; MAX_DEGREE + 1] {
+    let mut out = [0.0; MAX_DEGREE + 1];
+    for r in 0..q {
+        let width = knots[span + 1 + r] - knots[span + 1 + r - q];
+        let share = if width > 0.0 { q as f64 * n[r] / width } else { 0.0 };
+        out[r] -= share;
+        out[r + 1] += share;
+    }
+    out
+}
+
+/// A weighted point: the vector times its weight, and the weight.
+#[derive(Clone, Copy)]
+struct Weighted(Vector, f64);
+
+impl Weighted {
+    const ZERO: Self = Self(Vector::new(0.0, 0.0, 0.0), 0.0);
+
+    fn add(&mut self, factor: f64, other: &Self) {
+        self.0 += other.0 * factor;
+        self.1 += other.1 * factor;
+    }
+}
+
+/// Quotient rule: the point and two derivatives in one direction.
+fn divide(a: &Weighted, d: &Weighted, dd: &Weighted) -> [Vector; 3] {
+    let w = 1.0 / a.1;
+    let p = a.0 * w;
+    let first = (d.0 - p * d.1) * w;
+    let second = (dd.0 - first * (2.0 * d.1) - p * dd.1) * w;
+    [p, first, second]
+}
+
+impl NurbsCurve {
+    /// The parameter interval.
+    pub fn domain(&self) -> [f64; 2] {
+        [self.knots[self.degree], self.knots[self.points.len()]]
+    }
+
+    /// Point, first and second derivative; `t` outside the domain is clamped.
+    pub fn derivatives(&self, t: f64) -> [Vector; 3] {
+        let basis = Basis::at(&self.knots, self.degree, self.points.len(), t);
+        let mut sums = [Weighted::ZERO; 3];
+        for j in 0..=self.degree {
+            let i = basis.first + j;
+            let w = self.weights.get(i).copied().unwrap_or(1.0);
+            let weighted = Weighted(self.points[i].coords * w, w);
+            for (sum, values) in sums.iter_mut().zip(&basis.values) {
+                sum.add(values[j], &weighted);
+            }
+        }
+        divide(&sums[0], &sums[1], &sums[2])
+    }
+
+    /// The knots inside the domain, ends included, each once.
+    pub fn breaks(&self) -> impl Iterator<Item = f64> + '_ {
+        distinct(&self.knots[self.degree..=self.points.len()])
+    }
+}
+
+impl NurbsSurface {
+    /// Number of control points along u.
+    pub fn rows(&self) -> usize {
+        self.points.len() / self.columns.max(1)
+    }
+
+    /// The parameter rectangle [u0, u1, v0, v1].
+    pub fn domain(&self) -> [f64; 4] {
+        let (rows, columns) = (self.rows(), self.columns);
+        [self.knots_u[self.degree_u], self.knots_u[rows], self.knots_v[self.degree_v], self.knots_v[columns]]
+    }
+
+    /// Point and derivatives up to second order; parameters outside the domain are clamped.
+    pub fn jet(&self, u: f64, v: f64) -> Jet {
+        let bu = Basis::at(&self.knots_u, self.degree_u, self.rows(), u);
+        let bv = Basis::at(&self.knots_v, self.degree_v, self.columns, v);
+        // a: value, u, uu, v, uv, vv
+        let mut a = [Weighted::ZERO; 6];
+        for i in 0..=self.degree_u {
+            let row = self.row_sums(&bv, bu.first + i);
+            let [n, d, dd] = [bu.values[0][i], bu.values[1][i], bu.values[2][i]];
+            a[0].add(n, &row[0]);
+            a[1].add(d, &row[0]);
+            a[2].add(dd, &row[0]);
+            a[3].add(n, &row[1]);
+            a[4].add(d, &row[1]);
+            a[5].add(n, &row[2]);
+        }
+        let [p, du, duu] = divide(&a[0], &a[1], &a[2]);
+        let [_, dv, dvv] = divide(&a[0], &a[3], &a[5]);
+        let duv = (a[4].0 - du * a[3].1 - dv * a[1].1 - p * a[4].1) / a[0].1;
+        Jet { point: Point::from(p), du, dv, duu, duv, dvv }
+    }
+
+    /// The sums along v of one row of control points: value, first, second derivative.
+    fn row_sums(&self, basis: &Basis, row: usize) -> [Weighted; 3] {
+        let mut sums = [Weighted::ZERO; 3];
+        for j in 0..=self.degree_v {
+            let index = row * self.columns + basis.first + j;
+            let w = self.weights.get(index).copied().unwrap_or(1.0);
+            let weighted = Weighted(self.points[index].coords * w, w);
+            for (sum, values) in sums.iter_mut().zip(&basis.values) {
+                sum.add(values[j], &weighted);
+            }
+        }
+        sums
+    }
+
+    /// The number of non-empty knot spans along u and v.
+    pub fn spans(&self) -> [usize; 2] {
+        let (rows, columns) = (self.rows(), self.columns);
+        let count = |knots: &[f64]| distinct(knots).count().max(2) - 1;
+        [count(&self.knots_u[self.degree_u..=rows]), count(&self.knots_v[self.degree_v..=columns])]
+    }
+}
+
+/// The values of a sorted list, each once.
+fn distinct(knots: &[f64]) -> impl Iterator<Item = f64> + '_ {
+    knots.iter().enumerate().filter(|&(i, k)| i == 0 || *k > knots[i - 1]).map(|(_, k)| *k)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A quarter of the unit circle as a rational parabola.
+    fn quarter() -> NurbsCurve {
+        NurbsCurve {
+            degree: 2,
+            knots: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            points: [[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(Point::from).to_vec(),
+            weights: vec![1.0, 0.5_f64.sqrt(), 1.0],
+            closed: false,
+        }
+    }
+
+    #[test]
+    fn a_rational_parabola_is_a_circle() {
+        for i in 0..=10 {
+            let [p, d, _] = quarter().derivatives(i as f64 / 10.0);
+            assert!((p.norm() - 1.0).abs() < 1e-14);
+            assert!(p.dot(&d).abs() < 1e-14, "the tangent is at right angles to the radius");
+        }
+    }
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let (curve, t, h) = (quarter(), 0.3, 1e-4);
+        let [p, d, dd] = curve.derivatives(t);
+        let (a, b) = (curve.derivatives(t - h)[0], curve.derivatives(t + h)[0]);
+        assert!(((b - a) / (2.0 * h) - d).norm() < 1e-7);
+        assert!(((a + b - p * 2.0) / (h * h) - dd).norm() < 1e-6);
+    }
+
+    #[test]
+    fn knots_need_not_be_clamped() {
+        // Uniform quadratic: at the start of its domain the point is half way between the first two control points.
+        let points = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0]].map(Point::from).to_vec();
+        let knots = (0..6).map(f64::from).collect();
+        let curve = NurbsCurve { degree: 2, knots, points, weights: vec![], closed: false };
+        assert_eq!(curve.domain(), [2.0, 3.0]);
+        assert!((curve.derivatives(2.0)[0] - Vector::new(1.0, 0.0, 0.0)).norm() < 1e-15);
+        assert!((curve.derivatives(3.0)[0] - Vector::new(2.0, 1.0, 0.0)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_bilinear_patch_has_its_corners_and_twist() {
+        let points = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]].map(Point::from).to_vec();
+        let knots = vec![0.0, 0.0, 1.0, 1.0];
+        let surface = NurbsSurface {
+            degree_u: 1,
+            degree_v: 1,
+            knots_u: knots.clone(),
+            knots_v: knots,
+            columns: 2,
+            points,
+            weights: vec![],
+        };
+        let jet = surface.jet(0.5, 0.5);
+        assert_eq!(jet.point, Point::new(0.5, 0.5, 0.25));
+        assert_eq!(jet.du, Vector::new(1.0, 0.0, 0.5));
+        assert_eq!(jet.duv, Vector::z());
+        assert_eq!(surface.spans(), [1, 1]);
+    }
 }

@@ -1,0 +1,231 @@
+//! The point of a curve or surface nearest to a given point: Newton's method from a hint or from the best of a few
+//! samples.
+
+use super::surface::Surface;
+use super::{Curve, Placement};
+use crate::geometry::{Point, Vector};
+
+/// Newton steps before giving up; from a good start three or four are enough.
+const STEPS: usize = 30;
+/// A step this small, as a share of the parameter range, ends the iteration.
+const SMALL_STEP: f64 = 1e-12;
+/// Samples in each knot span when there is no hint.
+const SAMPLES: usize = 12;
+/// Grid lines in each direction at most when there is no hint.
+const MAX_GRID: usize = 64;
+
+/// A parameter interval, closed in itself where the period is given.
+struct Range {
+    from: f64,
+    to: f64,
+    period: Option<f64>,
+}
+
+impl Range {
+    fn new(from: f64, to: f64, period: Option<f64>) -> Self {
+        Self { from, to, period }
+    }
+
+    fn width(&self) -> f64 {
+        let width = self.to - self.from;
+        if width.is_finite() { width } else { 1.0 }
+    }
+
+    fn hold(&self, t: f64) -> f64 {
+        match self.period {
+            Some(period) if period.is_finite() => self.from + (t - self.from).rem_euclid(period),
+            _ => t.min(self.to).max(self.from),
+        }
+    }
+}
+
+/// The parameter of the point of `curve` nearest to `p`.
+pub(super) fn closest_parameter(curve: &Curve, p: &Point, hint: Option<f64>) -> f64 {
+    closest_by(curve, hint, |t| {
+        let [q, d, dd] = curve.derivatives(t);
+        [q - p.coords, d, dd]
+    })
+}
+
+/// The parameters of the point of `surface` nearest to `p`, for surfaces without a closed form.
+pub(super) fn closest_on_surface(surface: &Surface, p: &Point, hint: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    if let Surface::Extrusion { profile, direction } = surface {
+        return project_extrusion(profile, direction, p, hint);
+    }
+    let [u0, u1, v0, v1] = surface.domain();
+    let periods = surface.periods();
+    let ranges = [Range::new(u0, u1, periods[0]), Range::new(v0, v1, periods[1])];
+    let start = match hint {
+        Some(hint) => hint,
+        None => best_of_grid(surface, p)?,
+    };
+    newton_on_surface(surface, &ranges, p, start)
+}
+
+/// The best point of a grid over the domain (clipped to something finite), finer where there are many knot spans.
+pub(super) fn best_of_grid(surface: &Surface, p: &Point) -> Option<[f64; 2]> {
+    let [u0, u1, v0, v1] = surface.domain().map(|a| a.clamp(-1e6, 1e6));
+    let [nu, nv] = match surface {
+        Surface::Nurbs(nurbs) => nurbs.spans().map(|n| (3 * n + 1).clamp(6, MAX_GRID)),
+        _ => [24, 24],
+    };
+    let mut best = (f64::INFINITY, None);
+    for i in 0..=nu {
+        for j in 0..=nv {
+            let uv = [u0 + (u1 - u0) * i as f64 / nu as f64, v0 + (v1 - v0) * j as f64 / nv as f64];
+            let distance = (surface.point(uv[0], uv[1]) - p).norm_squared();
+            if distance < best.0 {
+                best = (distance, Some(uv));
+            }
+        }
+    }
+    best.1
+}
+
+/// Minimises |S(u, v) - p|^2 by Newton's method, with the Gauss-Newton matrix where the full one is not positive.
+fn newton_on_surface(surface: &Surface, ranges: &[Range; 2], p: &Point, hint: [f64; 2]) -> Option<[f64; 2]> {
+    let mut uv = [ranges[0].hold(hint[0]), ranges[1].hold(hint[1])];
+    let mut jet = surface.jet(uv[0], uv[1]);
+    for _ in 0..STEPS {
+        let r = jet.point - p;
+        let gradient = [r.dot(&jet.du), r.dot(&jet.dv)];
+        let gauss = [jet.du.norm_squared(), jet.du.dot(&jet.dv), jet.dv.norm_squared()];
+        let full = [gauss[0] + r.dot(&jet.duu), gauss[1] + r.dot(&jet.duv), gauss[2] + r.dot(&jet.dvv)];
+        let floor = 0.01 * gauss[0] * gauss[2];
+        let positive = full[0] > 0.0 && full[0] * full[2] - full[1] * full[1] > floor;
+        let mut step = solve(if positive { full } else { gauss }, gradient);
+        step = keep_inside(&uv, step, ranges, &gauss, &gradient);
+        let mut next = [ranges[0].hold(uv[0] + step[0]), ranges[1].hold(uv[1] + step[1])];
+        let mut value = surface.jet(next[0], next[1]);
+        for _ in 0..8 {
+            if (value.point - p).norm_squared() <= r.norm_squared() {
+                break;
+            }
+            step = [0.5 * step[0], 0.5 * step[1]];
+            next = [ranges[0].hold(uv[0] + step[0]), ranges[1].hold(uv[1] + step[1])];
+            value = surface.jet(next[0], next[1]);
+        }
+        let moved = ((next[0] - uv[0]).abs() / ranges[0].width()).max((next[1] - uv[1]).abs() / ranges[1].width());
+        (uv, jet) = (next, value);
+        if !moved.is_finite() || moved <= SMALL_STEP {
+            break;
+        }
+    }
+    (uv[0].is_finite() && uv[1].is_finite()).then_some(uv)
+}
+
+/// Where a step would leave the domain through a side, only the other parameter moves.
+fn keep_inside(uv: &[f64; 2], step: [f64; 2], ranges: &[Range; 2], gauss: &[f64; 3], gradient: &[f64; 2]) -> [f64; 2] {
+    let blocked = |i: usize| {
+        let (range, to) = (&ranges[i], uv[i] + step[i]);
+        range.period.is_none() && ((uv[i] <= range.from && to < uv[i]) || (uv[i] >= range.to && to > uv[i]))
+    };
+    let along = |i: usize| if gauss[2 * i] > 0.0 { -gradient[i] / gauss[2 * i] } else { 0.0 };
+    match (blocked(0), blocked(1)) {
+        (false, false) => step,
+        (true, false) => [0.0, along(1)],
+        (false, true) => [along(0), 0.0],
+        (true, true) => [0.0, 0.0],
+    }
+}
+
+/// The step that solves the 2 by 2 system; along one parameter only where the matrix is singular (poles).
+fn solve([a, b, c]: [f64; 3], gradient: [f64; 2]) -> [f64; 2] {
+    let determinant = a * c - b * b;
+    if determinant > 1e-14 * a * c && determinant > 0.0 {
+        return [(b * gradient[1] - c * gradient[0]) / determinant, (b * gradient[0] - a * gradient[1]) / determinant];
+    }
+    if a >= c && a > 0.0 {
+        [-gradient[0] / a, 0.0]
+    } else if c > 0.0 {
+        [0.0, -gradient[1] / c]
+    } else {
+        [0.0, 0.0]
+    }
+}
+
+/// Along the direction a point keeps its u: the profile is projected along it, which is a curve again.
+fn project_extrusion(profile: &Curve, direction: &Vector, p: &Point, hint: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let axis = direction.try_normalize(f64::MIN_POSITIVE)?;
+    let flat = |v: Vector| v - axis * axis.dot(&v);
+    let target = flat(p.coords);
+    let error = |t: f64| {
+        let [q, d, dd] = profile.derivatives(t);
+        [flat(q) - target, flat(d), flat(dd)]
+    };
+    let u = closest_by(profile, hint.map(|h| h[0]), error);
+    let v = (p.coords - profile.derivatives(u)[0]).dot(&axis) / direction.norm();
+    Some([u, v])
+}
+
+/// The profile turned into the half plane of `p`, either side of the axis; the nearer one counts.
+pub(super) fn project_revolution(
+    profile: &Curve,
+    axis: &Placement,
+    p: &Point,
+    hint: Option<[f64; 2]>,
+) -> Option<[f64; 2]> {
+    let q = axis.local(p);
+    let rho = q.x.hypot(q.y);
+    // Distance from the axis and height; the distance of a profile point has one sign along a sensible profile.
+    let local = |a: &Vector| Vector::new(a.dot(&axis.x), a.dot(&axis.y), a.dot(&axis.z));
+    let error = |t: f64| {
+        let [c, d, dd] = profile.derivatives(t);
+        let (c, d, dd) = (local(&(c - axis.origin.coords)), local(&d), local(&dd));
+        let r = c.x.hypot(c.y).max(1e-300);
+        let rd = (c.x * d.x + c.y * d.y) / r;
+        let rdd = (d.x * d.x + d.y * d.y + c.x * dd.x + c.y * dd.y - rd * rd) / r;
+        [Vector::new(r - rho, 0.0, c.z - q.z), Vector::new(rd, 0.0, d.z), Vector::new(rdd, 0.0, dd.z)]
+    };
+    let v = closest_by(profile, hint.map(|h| h[1]), error);
+    let at = local(&(profile.derivatives(v)[0] - axis.origin.coords));
+    Some([q.y.atan2(q.x) - at.y.atan2(at.x), v])
+}
+
+/// The parameter of a curve that makes the vector `error(t)[0]` shortest; `error` gives two derivatives as well.
+/// A step that makes it longer is halved; where the second-order term would turn the step round it is left out.
+fn closest_by(curve: &Curve, hint: Option<f64>, error: impl Fn(f64) -> [Vector; 3]) -> f64 {
+    let [a, b] = curve.domain();
+    let range = Range::new(a, b, curve.period());
+    let size = |t: f64| error(t)[0].norm_squared();
+    let mut t = match hint {
+        Some(hint) => range.hold(hint),
+        None if (b - a).is_finite() => best_by(curve, &size),
+        None => 0.0,
+    };
+    for _ in 0..STEPS {
+        let [r, d, dd] = error(t);
+        let full = d.norm_squared() + r.dot(&dd);
+        let bend = if full > 0.1 * d.norm_squared() { full } else { d.norm_squared() };
+        let mut step = if bend > 0.0 { -r.dot(&d) / bend } else { 0.0 };
+        for _ in 0..8 {
+            if size(range.hold(t + step)) <= r.norm_squared() {
+                break;
+            }
+            step *= 0.5;
+        }
+        let next = range.hold(t + step);
+        let moved = (next - t).abs();
+        t = next;
+        if moved.is_nan() || moved <= SMALL_STEP * range.width() {
+            break;
+        }
+    }
+    t
+}
+
+fn best_by(curve: &Curve, size: &impl Fn(f64) -> f64) -> f64 {
+    let breaks = curve.breaks();
+    let samples = breaks.windows(2).flat_map(|pair| {
+        let (from, width) = (pair[0], pair[1] - pair[0]);
+        (0..=SAMPLES).map(move |i| from + width * i as f64 / (SAMPLES) as f64)
+    });
+    let mut best = (f64::INFINITY, breaks.first().copied().unwrap_or(0.0));
+    for t in samples {
+        let value = size(t);
+        if value < best.0 {
+            best = (value, t);
+        }
+    }
+    best.1
+}

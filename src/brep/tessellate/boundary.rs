@@ -1,0 +1,259 @@
+//! The loops of a face -> closed paths in its parameter space.
+
+use super::chart::{Chart, Uv};
+use super::edges::EdgeLines;
+use crate::brep::{EdgeUse, Face};
+use crate::geometry::{Point, Point2, polygon};
+
+/// A closed path in parameter space, unwrapped: it may leave the domain of a periodic surface.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Path {
+    /// The points in space, one for each of `uv`.
+    pub points: Vec<Point>,
+    pub uv: Vec<Uv>,
+    /// Where the true edge is half way to the next point.
+    pub middles: Vec<Uv>,
+    /// How often it goes round the surface in u and v.
+    pub winding: [i32; 2],
+}
+
+impl Path {
+    /// Signed area in parameter space (of the polygon, for paths that do not go round).
+    pub fn signed_area(&self) -> f64 {
+        let polygon: Vec<Point2> = self.uv.iter().map(|&uv| Point2::from(uv)).collect();
+        polygon::signed_area(&polygon)
+    }
+
+    /// Goes round the surface?
+    pub fn winds(&self) -> bool {
+        self.winding != [0, 0]
+    }
+
+    /// The rectangle [u0, u1, v0, v1] around the path.
+    pub fn rectangle(&self) -> [f64; 4] {
+        rectangle(self.uv.iter())
+    }
+
+    /// The i-th segment with the middle of the true edge, unwrapped: the last one ends whole turns away from the start.
+    pub fn segment(&self, i: usize, periods: [Option<f64>; 2]) -> [Uv; 3] {
+        let next = if i + 1 < self.uv.len() { self.uv[i + 1] } else { self.end(periods) };
+        [self.uv[i], self.middles[i], next]
+    }
+
+    /// The start point, as reached at the end.
+    pub fn end(&self, periods: [Option<f64>; 2]) -> Uv {
+        let turn = |i: usize| f64::from(self.winding[i]) * periods[i].unwrap_or(0.0);
+        [self.uv[0][0] + turn(0), self.uv[0][1] + turn(1)]
+    }
+
+    /// Moves the path in parameter space.
+    pub fn shift(&mut self, by: Uv) {
+        for uv in self.uv.iter_mut().chain(&mut self.middles) {
+            *uv = [uv[0] + by[0], uv[1] + by[1]];
+        }
+    }
+}
+
+/// The rectangle [u0, u1, v0, v1] around points.
+pub(super) fn rectangle<'a>(points: impl Iterator<Item = &'a Uv>) -> [f64; 4] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+    points.fold(start, |r, p| [r[0].min(p[0]), r[1].max(p[0]), r[2].min(p[1]), r[3].max(p[1])])
+}
+
+/// The border of a face in space: one closed polyline for each loop, with the middles of the true edges.
+pub(super) fn polylines(face: &Face, lines: &EdgeLines, degenerate: &[bool]) -> Vec<[Vec<Point>; 2]> {
+    let mut chains: Vec<Vec<EdgeUse>> = Vec::new();
+    for face_loop in &face.loops {
+        let uses = face_loop.uses.iter().copied().filter(|u| !degenerate[u.edge.index()]).collect();
+        split_at_seams(uses, &mut chains);
+    }
+    chains.iter().map(|chain| polyline(chain, lines)).filter(|p| p[0].len() > 1).collect()
+}
+
+/// Takes out edges that a chain runs along in both directions; what lies between them become chains of their own.
+fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>) {
+    let mut open = vec![uses];
+    while let Some(chain) = open.pop() {
+        let pair = (0..chain.len()).find_map(|i| {
+            let back = |j: &usize| chain[*j].edge == chain[i].edge && chain[*j].forward != chain[i].forward;
+            (i + 1..chain.len()).find(back).map(|j| (i, j))
+        });
+        match pair {
+            Some((i, j)) => {
+                open.push(chain[i + 1..j].to_vec());
+                open.push(chain[j + 1..].iter().chain(&chain[..i]).copied().collect());
+            }
+            None if !chain.is_empty() => out.push(chain),
+            None => {}
+        }
+    }
+}
+
+fn polyline(chain: &[EdgeUse], lines: &EdgeLines) -> [Vec<Point>; 2] {
+    let (mut points, mut middles) = (Vec::new(), Vec::new());
+    for edge_use in chain {
+        let (p, m) = lines.line(edge_use.edge);
+        let n = p.len() - 1;
+        if edge_use.forward {
+            points.extend_from_slice(&p[..n]);
+            middles.extend_from_slice(&m[..n]);
+        } else {
+            points.extend(p[1..].iter().rev());
+            middles.extend(m[..n].iter().rev());
+        }
+    }
+    [points, middles]
+}
+
+/// Why a loop could not be mapped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Unmapped {
+    /// How far its points are from the surface, mm.
+    pub distance: f64,
+}
+
+/// Maps closed polylines into the parameter space of the chart. Points further than `far` (mm) from the surface are an error.
+pub(super) fn paths(chart: &Chart, borders: Vec<[Vec<Point>; 2]>, size: f64, far: f64) -> Result<Vec<Path>, Unmapped> {
+    borders.into_iter().map(|[points, middles]| path(chart, points, middles, size, far)).collect()
+}
+
+fn path(chart: &Chart, points: Vec<Point>, middles: Vec<Point>, size: f64, far: f64) -> Result<Path, Unmapped> {
+    if let crate::brep::Surface::Plane(_) = *chart.surface {
+        return plane_path(chart, points, &middles, far);
+    }
+    let mut raw = Tracer { chart, far, size, hint: None };
+    let mut mapped: Vec<(Uv, Uv, Option<usize>)> = Vec::with_capacity(points.len());
+    for (p, m) in points.iter().zip(&middles) {
+        let (uv, pole) = raw.map(p)?;
+        let (middle, _) = raw.map(m)?;
+        mapped.push((uv, middle, pole));
+    }
+    // Start away from poles, where one parameter means nothing.
+    let start = mapped.iter().position(|m| m.2.is_none()).unwrap_or(0);
+    mapped.rotate_left(start);
+    let mut points = points;
+    points.rotate_left(start);
+    let mut found = unwrap(chart, &points, &mapped, chart.flipped);
+    if found.winds() && mapped.iter().any(|m| m.2.is_some()) {
+        // Past a pole a path closes when it is oriented as it should be; if not, try the other way.
+        let other = unwrap(chart, &points, &mapped, !chart.flipped);
+        if !other.winds() {
+            found = other;
+        }
+    }
+    Ok(found)
+}
+
+fn plane_path(chart: &Chart, points: Vec<Point>, middles: &[Point], far: f64) -> Result<Path, Unmapped> {
+    let crate::brep::Surface::Plane(placement) = *chart.surface else { return Err(Unmapped { distance: far }) };
+    let map = |p: &Point| {
+        let d = p - placement.origin;
+        [d.dot(&placement.x), d.dot(&placement.y)]
+    };
+    let distance = points.iter().map(|p| (p - placement.origin).dot(&placement.z).abs()).fold(0.0, f64::max);
+    if !distance.is_finite() || distance > far {
+        return Err(Unmapped { distance });
+    }
+    let uv = points.iter().map(map).collect();
+    Ok(Path { uv, middles: middles.iter().map(map).collect(), points, winding: [0, 0] })
+}
+
+/// Projects one point after the other.
+struct Tracer<'a> {
+    chart: &'a Chart<'a>,
+    far: f64,
+    size: f64,
+    hint: Option<Uv>,
+}
+
+impl Tracer<'_> {
+    fn map(&mut self, p: &Point) -> Result<(Uv, Option<usize>), Unmapped> {
+        let miss = |uv: &Uv| (self.chart.point(*uv) - p).norm();
+        let near = self.chart.surface.project(p, self.hint).map(|uv| (miss(&uv), uv));
+        let good = near.filter(|n| n.0 <= 0.02 * self.far);
+        let best = match (good, self.hint) {
+            (Some(found), _) => Some(found),
+            (None, Some(_)) => {
+                let fresh = self.chart.surface.project(p, None).map(|uv| (miss(&uv), uv));
+                [near, fresh].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
+            }
+            (None, None) => near,
+        };
+        let (distance, uv) = best.ok_or(Unmapped { distance: f64::INFINITY })?;
+        if distance.is_nan() || distance > self.far {
+            return Err(Unmapped { distance });
+        }
+        let pole = self.chart.pole_at(uv, self.size);
+        self.hint = pole.is_none().then_some(uv);
+        Ok((uv, pole))
+    }
+}
+
+/// Joins the mapped points: each comes within half a period of the one before; at a pole the path runs along the
+/// collapsed side from where it came in to where it goes out.
+fn unwrap(chart: &Chart, points: &[Point], mapped: &[(Uv, Uv, Option<usize>)], flipped: bool) -> Path {
+    let mut path = Path::default();
+    let nearest = |uv: Uv, to: Uv| {
+        let turn = |i: usize| chart.periods[i].map_or(uv[i], |p| uv[i] + p * ((to[i] - uv[i]) / p).round());
+        [turn(0), turn(1)]
+    };
+    let n = mapped.len();
+    let mut last = mapped[0].0;
+    let mut i = 0;
+    while i < n {
+        let (raw, middle, pole) = mapped[i];
+        if let Some(side) = pole {
+            let behind = (i..n).find(|&j| mapped[j].2.is_none());
+            let out = behind.map_or(mapped[0].0, |j| mapped[j].0);
+            let [enter, leave] = along_pole(chart, side, last, raw, out, flipped);
+            let middle = |a: Uv, b: Uv| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            // The middle into the pole was mapped before; it may be anywhere near it.
+            push(&mut path, points[i], enter, middle(enter, leave));
+            push(&mut path, points[i], leave, middle(leave, nearest(out, leave)));
+            last = nearest(out, leave);
+            i = behind.unwrap_or(n);
+            continue;
+        }
+        let uv = nearest(raw, last);
+        let next_is_pole = mapped[(i + 1) % n].2.is_some();
+        let middle = nearest(middle, uv);
+        push(&mut path, points[i], uv, middle);
+        last = if next_is_pole { uv } else { middle };
+        i += 1;
+    }
+    let closing = nearest(mapped[0].0, last);
+    let turns = |i: usize| chart.periods[i].map_or(0.0, |p| ((closing[i] - path.uv[0][i]) / p).round());
+    path.winding = [turns(0) as i32, turns(1) as i32];
+    path
+}
+
+fn push(path: &mut Path, point: Point, uv: Uv, middle: Uv) {
+    path.points.push(point);
+    path.uv.push(uv);
+    path.middles.push(middle);
+}
+
+/// The two ends of the way along a pole: from `last` into it and out to `out`. With the face on the left, the way
+/// along an upper side runs towards smaller u, along a lower side towards larger u (for v the other way round).
+fn along_pole(chart: &Chart, side: usize, last: Uv, pole: Uv, out: Uv, flipped: bool) -> [Uv; 2] {
+    let (axis, free) = (side / 2, 1 - side / 2);
+    let high = last[axis] < pole[axis];
+    let falling = (high != flipped) == (axis == 1);
+    let mut enter = pole;
+    enter[free] = last[free];
+    let mut leave = pole;
+    leave[free] = out[free];
+    if let Some(period) = chart.periods[free] {
+        let ahead = (out[free] - last[free]).rem_euclid(period);
+        let none = ahead.min(period - ahead) < 1e-6 * period;
+        let way = if none {
+            0.0
+        } else if falling {
+            ahead - period
+        } else {
+            ahead
+        };
+        leave[free] = last[free] + way;
+    }
+    [enter, leave]
+}

@@ -1,0 +1,206 @@
+//! The surface of one face, made ready for tessellation.
+
+use std::borrow::Cow;
+
+use super::boundary::Path;
+use super::edges::{Fineness, angular_step};
+use crate::brep::Surface;
+use crate::brep::surface::Jet;
+use crate::geometry::{Point, Vector};
+
+/// Grid lines of one face in each direction at most.
+const MAX_LINES: usize = 128;
+
+/// A point of a parameter space.
+pub(super) type Uv = [f64; 2];
+
+/// A surface with what is asked again and again.
+pub(super) struct Chart<'a> {
+    pub surface: Cow<'a, Surface>,
+    pub domain: [f64; 4],
+    pub periods: [Option<f64>; 2],
+    /// The face normal is against S_u x S_v.
+    pub flipped: bool,
+    /// Parameters outside the domain must be brought back before evaluation.
+    wraps: bool,
+    /// Collapsed sides: [u low, u high, v low, v high].
+    pub poles: [bool; 4],
+}
+
+impl<'a> Chart<'a> {
+    /// For the surface of a face; `border`: points of its edges, which the poles of a sphere are kept away from.
+    pub fn new(surface: &'a Surface, same_sense: bool, border: &[Point], size: f64) -> Self {
+        let surface = match surface {
+            Surface::Rectangular { basis, .. } => Cow::Borrowed(&**basis),
+            other => Cow::Borrowed(other),
+        };
+        let surface = match surface.simplified() {
+            Some(simple) => Cow::Owned(simple),
+            None => surface,
+        };
+        let surface = match &*surface {
+            Surface::Sphere { placement, radius } if !border.is_empty() => {
+                let placement = super::sphere::turned_away(placement, border);
+                Cow::Owned(Surface::Sphere { placement, radius: *radius })
+            }
+            _ => surface,
+        };
+        let (domain, periods) = (surface.domain(), surface.periods());
+        let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
+            && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
+        let mut chart = Self { surface, domain, periods, flipped: !same_sense, wraps, poles: [false; 4] };
+        chart.poles = chart.find_poles(size);
+        chart
+    }
+
+    /// Point and derivatives, also outside the domain of a periodic surface.
+    pub fn jet(&self, uv: Uv) -> Jet {
+        let [u, v] = if self.wraps { self.wrapped(uv) } else { uv };
+        self.surface.jet(u, v)
+    }
+
+    pub fn point(&self, uv: Uv) -> Point {
+        self.jet(uv).point
+    }
+
+    fn wrapped(&self, mut uv: Uv) -> Uv {
+        for i in 0..2 {
+            let (from, to) = (self.domain[2 * i], self.domain[2 * i + 1]);
+            if let Some(period) = self.periods[i]
+                && !(from..=to).contains(&uv[i])
+            {
+                uv[i] = from + (uv[i] - from).rem_euclid(period);
+            }
+        }
+        uv
+    }
+
+    /// Sides of the domain where the surface has shrunk to a point: seen from the speed along the side.
+    fn find_poles(&self, size: f64) -> [bool; 4] {
+        let mut poles = [false; 4];
+        match &*self.surface {
+            Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Torus { .. } | Surface::Extrusion { .. } => {}
+            Surface::Sphere { .. } => poles = [false, false, true, true],
+            Surface::Cone { .. } => {}
+            _ => {
+                let [u0, u1, v0, v1] = self.domain;
+                if self.domain.iter().all(|d| d.is_finite()) {
+                    let middle = |s: f64, a: f64, b: f64| a + s * (b - a);
+                    let still = |side: usize| {
+                        [0.13, 0.38, 0.71].iter().all(|&s| match side {
+                            0 | 1 => {
+                                self.jet([self.domain[side], middle(s, v0, v1)]).dv.norm() * (v1 - v0) < 1e-6 * size
+                            }
+                            _ => self.jet([middle(s, u0, u1), self.domain[side]]).du.norm() * (u1 - u0) < 1e-6 * size,
+                        })
+                    };
+                    poles = [still(0), still(1), still(2), still(3)];
+                }
+            }
+        }
+        poles
+    }
+
+    /// Bounds a cone at its apex, on the side where the paths are.
+    pub fn settle(&mut self, paths: &[Path]) {
+        let Surface::Cone { radius, half_angle, .. } = &*self.surface else { return };
+        let apex = -radius / half_angle.tan();
+        let heights = || paths.iter().flat_map(|p| &p.uv).map(|uv| uv[1]);
+        let above = heights().sum::<f64>() / heights().count().max(1) as f64 > apex;
+        let side = if above { 2 } else { 3 };
+        self.domain[side] = apex;
+        self.poles[side] = true;
+    }
+
+    /// Whether the surface has no border: closed in both directions, by a period or by poles.
+    pub fn is_closed(&self) -> bool {
+        let closed = |axis: usize| self.periods[axis].is_some() || (self.poles[2 * axis] && self.poles[2 * axis + 1]);
+        closed(0) && closed(1)
+    }
+
+    /// Which side of the domain a point lies on, if that side is a pole; `None` away from poles. The apex of a cone
+    /// counts as low side for points above it: the caller says where the face is by `near`.
+    pub fn pole_at(&self, uv: Uv, size: f64) -> Option<usize> {
+        if let Surface::Cone { radius, half_angle, .. } = &*self.surface {
+            let slope = half_angle.tan();
+            return ((radius + uv[1] * slope).abs() <= 1e-6 * size).then_some(2);
+        }
+        (0..4).find(|&side| {
+            let (axis, along) = (side / 2, self.domain[2 * (side / 2) + 1] - self.domain[2 * (side / 2)]);
+            self.poles[side] && (uv[axis] - self.domain[side]).abs() <= 1e-6 * along
+        })
+    }
+
+    /// How long a unit step of u and of v is around the middle of the rectangle, mm.
+    pub fn scale(&self, [u0, u1, v0, v1]: [f64; 4]) -> [f64; 2] {
+        let mut longest = [0.0_f64; 2];
+        for (s, t) in [(0.5, 0.5), (0.2, 0.3), (0.8, 0.7)] {
+            let jet = self.jet([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
+            longest = [longest[0].max(jet.du.norm()), longest[1].max(jet.dv.norm())];
+        }
+        longest.map(|l| if l.is_finite() && l > 0.0 { l } else { 1.0 })
+    }
+
+    /// In how many steps to cut the rectangle along u and v, by curvature.
+    pub fn steps(&self, rectangle: [f64; 4], fineness: &Fineness) -> [usize; 2] {
+        let [u0, u1, v0, v1] = rectangle;
+        let turns =
+            |width: f64, radius: f64| ((width / angular_step(radius, fineness)) - 1e-9).ceil().max(1.0) as usize;
+        let counts = match &*self.surface {
+            Surface::Plane(_) => [1, 1],
+            Surface::Cylinder { radius, .. } => [turns(u1 - u0, *radius), 1],
+            Surface::Cone { radius, half_angle, .. } => {
+                let widest = [v0, v1].map(|v| (radius + v * half_angle.tan()).abs());
+                [turns(u1 - u0, widest[0].max(widest[1])), 1]
+            }
+            Surface::Sphere { radius, .. } => [turns(u1 - u0, *radius), turns(v1 - v0, *radius)],
+            Surface::Torus { major, minor, .. } => {
+                [turns(u1 - u0, major.abs() + minor.abs()), turns(v1 - v0, minor.abs())]
+            }
+            _ => self.sampled_steps(rectangle, fineness),
+        };
+        counts.map(|n| n.clamp(1, MAX_LINES))
+    }
+
+    /// From second differences and turns of the normal on a coarse grid.
+    fn sampled_steps(&self, [u0, u1, v0, v1]: [f64; 4], fineness: &Fineness) -> [usize; 2] {
+        let spans = match &*self.surface {
+            Surface::Nurbs(nurbs) => nurbs.spans(),
+            _ => [4, 4],
+        };
+        let samples = spans.map(|n| (2 * n + 2).clamp(4, 24));
+        let ruled = self.surface.is_ruled_along_v();
+        let at = |s: f64, t: f64| self.jet([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
+        let along = |n: usize, jet: &dyn Fn(f64, f64) -> Jet| {
+            let mut need = 1.0_f64;
+            for line in [0.0, 0.35, 0.65, 1.0] {
+                let row: Vec<Jet> = (0..=n).map(|i| jet(i as f64 / n as f64, line)).collect();
+                need = need.max(row_need(&row, fineness));
+            }
+            need.min(MAX_LINES as f64).ceil() as usize
+        };
+        let nu = along(samples[0], &at);
+        let nv = if ruled { 1 } else { along(samples[1], &|s, t| at(t, s)) };
+        [nu, nv]
+    }
+}
+
+/// How many equal steps a row of samples needs for the deflection and the angle of the normals.
+fn row_need(row: &[Jet], fineness: &Fineness) -> f64 {
+    let n = (row.len() - 1) as f64;
+    let mut sagitta = 0.0_f64;
+    let mut angle = 0.0_f64;
+    for three in row.windows(3) {
+        let bow = (three[0].point.coords + three[2].point.coords) * 0.5 - three[1].point.coords;
+        let normal = three[1].normal().try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::zeros);
+        sagitta = sagitta.max(bow.dot(&normal).abs());
+        let (a, b) = (three[0].normal(), three[2].normal());
+        if sagitta > 0.02 * fineness.deflection && a.norm() > 0.0 && b.norm() > 0.0 {
+            angle = angle.max(a.cross(&b).norm().atan2(a.dot(&b)));
+        }
+    }
+    let by_sagitta = 0.5 * n * (sagitta / fineness.deflection).sqrt();
+    let by_angle = 0.5 * n * angle / fineness.angle;
+    let need = by_sagitta.max(by_angle);
+    if need.is_finite() { need } else { 1.0 }
+}

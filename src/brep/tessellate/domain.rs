@@ -1,0 +1,214 @@
+//! A face's part of its parameter space -> triangles.
+
+use super::boundary::{Path, rectangle};
+use super::chart::{Chart, Uv};
+use super::edges::Fineness;
+use super::interior::Grid;
+use super::strip;
+use super::triangulate::{delaunay, ears, zip};
+use crate::geometry::{Point, Point2, polygon};
+
+/// A triangulated face: points in space and in parameter space side by side.
+#[derive(Default)]
+pub(super) struct Patch {
+    pub points: Vec<Point>,
+    pub uv: Vec<Uv>,
+    /// Counter-clockwise in parameter space.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each path: 1 where the face is on its left, -1 where it is on its right.
+    pub sides: Vec<f64>,
+}
+
+impl Patch {
+    /// Adds a point of the surface.
+    pub fn add(&mut self, chart: &Chart, uv: Uv) {
+        self.points.push(chart.point(uv));
+        self.uv.push(uv);
+    }
+}
+
+/// Triangulates the part of the surface that the paths bound. `None` where they bound nothing sensible.
+pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness) -> Option<Patch> {
+    if paths.iter().any(Path::winds) || is_complement(chart, paths) {
+        return strip::triangulate(chart, paths, fineness);
+    }
+    let outer =
+        (0..paths.len()).max_by(|&a, &b| paths[a].signed_area().abs().total_cmp(&paths[b].signed_area().abs()))?;
+    gather_inside(chart, paths, outer);
+    let layout = Layout::new(paths, outer)?;
+    let patch = layout.patch(paths);
+    let steps = chart.steps(layout.rectangle, fineness);
+    let flat = matches!(*chart.surface, crate::brep::Surface::Plane(_));
+    let ruled = chart.surface.is_ruled_along_v();
+    let quick = if flat || steps == [1, 1] {
+        ears(&patch.uv, &layout.rings, layout.area)
+    } else if ruled && paths.len() == 1 {
+        layout.by_zip(&patch, steps)
+    } else {
+        None
+    };
+    if let Some(triangles) = quick {
+        return Some(Patch { triangles, ..patch });
+    }
+    let cells =
+        if ruled { Grid::rows_for_shape(layout.rectangle, steps, chart.scale(layout.rectangle)) } else { steps };
+    by_delaunay(chart, &layout, patch, (!flat).then_some(cells))
+}
+
+/// On a closed surface a loop has a face on both sides; the direction of the largest one says that the face is not
+/// the one it encloses in parameter space.
+fn is_complement(chart: &Chart, paths: &[Path]) -> bool {
+    if !chart.is_closed() {
+        return false;
+    }
+    let areas = paths.iter().map(Path::signed_area);
+    let largest = areas.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    largest.is_none_or(|area| (area < 0.0) != chart.flipped)
+}
+
+/// Moves the other paths by whole periods into the outer one.
+fn gather_inside(chart: &Chart, paths: &mut [Path], outer: usize) {
+    if chart.periods == [None, None] || paths.len() == 1 {
+        return;
+    }
+    let polygon: Vec<Point2> = paths[outer].uv.iter().map(|&uv| Point2::from(uv)).collect();
+    let around = paths[outer].rectangle();
+    for index in (0..paths.len()).filter(|&i| i != outer) {
+        let start = paths[index].uv[0];
+        let shifts = |axis: usize| {
+            let period = chart.periods[axis].unwrap_or(0.0);
+            let low = if period > 0.0 { ((around[2 * axis] - start[axis]) / period).floor() as i32 } else { 0 };
+            let high = if period > 0.0 { ((around[2 * axis + 1] - start[axis]) / period).ceil() as i32 } else { 0 };
+            (low..=high.min(low + 64)).map(move |k| f64::from(k) * period)
+        };
+        let all = shifts(0).flat_map(|a| shifts(1).map(move |b| [a, b]));
+        let inside = |by: &Uv| polygon::winding_number(&polygon, &Point2::new(start[0] + by[0], start[1] + by[1])) != 0;
+        if let Some(by) = all.into_iter().find(inside) {
+            paths[index].shift(by);
+        }
+    }
+}
+
+/// The paths of a face laid out as rings, the outer one first.
+struct Layout {
+    order: Vec<usize>,
+    rings: Vec<usize>,
+    sides: Vec<f64>,
+    rectangle: [f64; 4],
+    area: f64,
+}
+
+impl Layout {
+    fn new(paths: &[Path], outer: usize) -> Option<Self> {
+        let order: Vec<usize> = std::iter::once(outer).chain((0..paths.len()).filter(|&i| i != outer)).collect();
+        let mut sides = vec![1.0; paths.len()];
+        let (mut rings, mut count, mut area) = (Vec::new(), 0, 0.0);
+        for &i in &order {
+            let signed = paths[i].signed_area();
+            sides[i] = if (signed > 0.0) == (i == outer) { 1.0 } else { -1.0 };
+            area += if i == outer { signed.abs() } else { -signed.abs() };
+            rings.push(count);
+            count += paths[i].uv.len();
+        }
+        let rectangle = rectangle(paths[outer].uv.iter());
+        (area > 0.0 && area.is_finite()).then_some(Self { order, rings, sides, rectangle, area })
+    }
+
+    fn patch(&self, paths: &[Path]) -> Patch {
+        let mut patch = Patch { sides: self.sides.clone(), ..Patch::default() };
+        for &i in &self.order {
+            patch.points.extend_from_slice(&paths[i].points);
+            patch.uv.extend_from_slice(&paths[i].uv);
+        }
+        patch
+    }
+
+    /// The rings as segments between `count` points.
+    fn segments(&self, count: usize) -> Vec<[u32; 2]> {
+        let ends = self.rings[1..].iter().copied().chain([count]);
+        let ring = |(from, to): (usize, usize)| {
+            (from..to).map(move |i| [i as u32, if i + 1 < to { i + 1 } else { from } as u32])
+        };
+        self.rings.iter().copied().zip(ends).flat_map(ring).collect()
+    }
+
+    /// Cuts the ring at its first and last u into two chains.
+    fn by_zip(&self, patch: &Patch, steps: [usize; 2]) -> Option<Vec<[u32; 3]>> {
+        let [u0, u1, ..] = self.rectangle;
+        let uv = &patch.uv;
+        let n = uv.len();
+        let near = 1e-7 * (u1 - u0);
+        let mut ring: Vec<u32> = (0..n as u32).collect();
+        if self.sides[self.order[0]] < 0.0 {
+            ring.reverse();
+        }
+        let at_start = |&i: &u32| uv[i as usize][0] <= u0 + near;
+        // Counter-clockwise the last point on the left side is its lowest.
+        let first = (0..n).find(|&k| at_start(&ring[k]) && !at_start(&ring[(k + 1) % n]))?;
+        ring.rotate_left(first);
+        let right = ring.iter().position(|&i| uv[i as usize][0] >= u1 - near)?;
+        let lower: Vec<u32> = ring[..=right].to_vec();
+        let mut upper: Vec<u32> = ring[right..].iter().rev().copied().collect();
+        upper.insert(0, ring[0]);
+        // The upper chain starts on the left side and ends where the lower one ends.
+        let rising = |chain: &[u32]| chain.windows(2).all(|w| uv[w[1] as usize][0] >= uv[w[0] as usize][0] - near);
+        if !rising(&lower) || !rising(&upper) {
+            return None;
+        }
+        let widest = 1.7 * (u1 - u0) / steps[0] as f64 + near;
+        zip(uv, &lower, &upper, self.area, widest)
+    }
+}
+
+/// Constrained Delaunay with grid points; the inside is where a ray crosses an odd number of segments.
+fn by_delaunay(chart: &Chart, layout: &Layout, mut patch: Patch, grid: Option<[usize; 2]>) -> Option<Patch> {
+    let segments = layout.segments(patch.uv.len());
+    let sides: Vec<[Uv; 2]> = segments.iter().map(|s| s.map(|i| patch.uv[i as usize])).collect();
+    let whole = rectangle(patch.uv.iter());
+    if let Some(cells) = grid {
+        let mut grid = Grid::new(layout.rectangle, cells);
+        sides.iter().for_each(|[a, b]| grid.block(a, b));
+        grid.nodes(false).for_each(|uv| patch.add(chart, uv));
+    }
+    let scale = chart.scale(whole);
+    let inside = |p: &Uv| sides.iter().filter(|[a, b]| crosses_below(a, b, p, 0)).count() % 2 == 1;
+    fill(chart, patch, &segments, scale, inside)
+}
+
+/// Whether the segment passes below `p`, "below" being towards smaller values of the coordinate that is not `along`.
+pub(super) fn crosses_below(a: &Uv, b: &Uv, p: &Uv, along: usize) -> bool {
+    let up = 1 - along;
+    if (a[along] <= p[along]) == (b[along] <= p[along]) {
+        return false;
+    }
+    let s = (p[along] - a[along]) / (b[along] - a[along]);
+    a[up] + s * (b[up] - a[up]) < p[up]
+}
+
+/// Triangulates the points and keeps the regions that are inside.
+pub(super) fn fill(
+    chart: &Chart,
+    mut patch: Patch,
+    segments: &[[u32; 2]],
+    scale: [f64; 2],
+    inside: impl Fn(&Uv) -> bool,
+) -> Option<Patch> {
+    let Some(origin) = patch.uv.first().copied() else { return None };
+    let scaled: Vec<Uv> =
+        patch.uv.iter().map(|p| [(p[0] - origin[0]) * scale[0], (p[1] - origin[1]) * scale[1]]).collect();
+    let cut = delaunay(&scaled, segments)?;
+    for p in &cut.added {
+        patch.add(chart, [origin[0] + p[0] / scale[0], origin[1] + p[1] / scale[1]]);
+    }
+    let keep: Vec<bool> = cut
+        .largest
+        .iter()
+        .map(|&t| {
+            let [a, b, c] = cut.triangles[t as usize].map(|i| patch.uv[i as usize]);
+            inside(&[(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0])
+        })
+        .collect();
+    let kept = cut.triangles.iter().zip(&cut.regions).filter(|(_, r)| keep[**r as usize]);
+    patch.triangles = kept.map(|(t, _)| *t).collect();
+    (!patch.triangles.is_empty()).then_some(patch)
+}

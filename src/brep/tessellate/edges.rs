@@ -1,0 +1,221 @@
+//! Edges -> polylines in space, once for all faces that use them.
+
+use std::f64::consts::PI;
+
+use super::Options;
+use crate::brep::{Curve, EdgeId, Model, Surface};
+use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::{Point, Vector};
+
+/// A curve is halved this often at most.
+const MAX_DEPTH: u32 = 9;
+/// Segments of an edge on a free-form face at least: straight edges need not be straight in its parameter space.
+const FREE_FORM_SEGMENTS: usize = 4;
+/// Points of one edge at most.
+const MAX_POINTS: usize = 4096;
+
+/// The polylines of all edges of a model in one arena.
+pub(super) struct EdgeLines {
+    /// Points on the edges.
+    points: Vec<Point>,
+    /// The point of the curve half way between a point and the next one of its edge.
+    middles: Vec<Point>,
+    starts: Vec<u32>,
+}
+
+/// What the edges of a body are cut by.
+pub(super) struct Fineness {
+    /// Largest distance between chord and curve, mm.
+    pub deflection: f64,
+    /// Largest turn of the tangent along a chord, radians.
+    pub angle: f64,
+}
+
+impl EdgeLines {
+    /// Tessellates the edges; `fineness[e]` and `free_form[e]` say how each is to be cut.
+    pub fn of(
+        model: &Model,
+        spans: &[Option<[f64; 2]>],
+        fineness: &Fineness,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        let free_form = edges_of_free_form_faces(model);
+        let mut lines = Self { points: Vec::new(), middles: Vec::new(), starts: vec![0] };
+        for (index, span) in spans.iter().enumerate() {
+            cancel.check()?;
+            let least = if free_form[index] { FREE_FORM_SEGMENTS } else { 1 };
+            lines.add(model, EdgeId(index as u32), *span, fineness, least);
+        }
+        Ok(lines)
+    }
+
+    /// Points and middles of an edge; the last middle repeats the last point.
+    pub fn line(&self, edge: EdgeId) -> (&[Point], &[Point]) {
+        let range = self.starts[edge.index()] as usize..self.starts[edge.index() + 1] as usize;
+        (&self.points[range.clone()], &self.middles[range])
+    }
+
+    fn add(&mut self, model: &Model, id: EdgeId, span: Option<[f64; 2]>, fineness: &Fineness, least: usize) {
+        let [start, end] = model.ends(id);
+        let first = self.points.len();
+        match (&model.edges[id.index()].curve, span) {
+            (Some(curve), Some([from, to])) if !matches!(**curve, Curve::Line { .. }) => {
+                self.follow(curve, [from, to], fineness, least);
+                let last = self.points.len() - 1;
+                self.points[first] = start;
+                self.points[last] = end;
+                self.middles[last] = end;
+            }
+            _ => self.straight(&start, &end, least),
+        }
+        self.starts.push(self.points.len() as u32);
+    }
+
+    fn straight(&mut self, start: &Point, end: &Point, segments: usize) {
+        let step = (end - start) / segments as f64;
+        for i in 0..=segments {
+            self.points.push(if i == segments { *end } else { start + step * i as f64 });
+            self.middles.push(start + step * (i as f64 + 0.5).min(segments as f64));
+        }
+    }
+
+    fn follow(&mut self, curve: &Curve, span: [f64; 2], fineness: &Fineness, least: usize) {
+        let period = curve.period();
+        let at = |t: f64| curve.derivatives(curve.wrap(t, period));
+        let parameters = match curve {
+            Curve::Circle { placement, radius } => {
+                conic_parameters(span, *radius, [placement.x * *radius, placement.y * *radius], fineness, least)
+            }
+            Curve::Ellipse { placement, semi_x, semi_y } => {
+                let axes = [placement.x * *semi_x, placement.y * *semi_y];
+                conic_parameters(span, semi_x.max(*semi_y), axes, fineness, least)
+            }
+            _ => adaptive_parameters(curve, &at, span, period, fineness, least),
+        };
+        for pair in parameters.windows(2) {
+            self.points.push(Point::from(at(pair[0])[0]));
+            self.middles.push(Point::from(at(0.5 * (pair[0] + pair[1]))[0]));
+        }
+        let last = Point::from(at(span[1])[0]);
+        self.points.push(last);
+        self.middles.push(last);
+    }
+}
+
+fn edges_of_free_form_faces(model: &Model) -> Vec<bool> {
+    let mut flags = vec![false; model.edges.len()];
+    for face in &model.faces {
+        let crate::brep::FaceGeometry::Trimmed { surface, .. } = &face.geometry else { continue };
+        if matches!(
+            **surface,
+            Surface::Nurbs(_) | Surface::Revolution { .. } | Surface::Extrusion { .. } | Surface::Offset { .. }
+        ) {
+            face.loops.iter().flat_map(|l| &l.uses).for_each(|u| flags[u.edge.index()] = true);
+        }
+    }
+    flags
+}
+
+/// The largest step of the angle on a circle of radius `radius`.
+pub(super) fn angular_step(radius: f64, fineness: &Fineness) -> f64 {
+    let share = (fineness.deflection / radius.abs().max(f64::MIN_POSITIVE)).min(1.0);
+    fineness.angle.min(2.0 * (1.0 - share).acos()).max(2e-3)
+}
+
+/// Equal steps of the angle, and the angles where the conic is extreme along a coordinate axis, so that the box is
+/// exact; `axes`: the semi-axes as vectors.
+fn conic_parameters(span: [f64; 2], radius: f64, axes: [Vector; 2], fineness: &Fineness, least: usize) -> Vec<f64> {
+    let width = span[1] - span[0];
+    let count = ((width.abs() / angular_step(radius, fineness) - 1e-9).ceil() as usize).clamp(least, MAX_POINTS);
+    let step = width / count as f64;
+    let mut parameters: Vec<f64> = (0..=count).map(|i| span[0] + step * i as f64).collect();
+    if count > 1 {
+        (0..3).for_each(|axis| add_extremes(&mut parameters, span, step, axes[1][axis].atan2(axes[0][axis])));
+        parameters.sort_by(|a, b| (a * step).total_cmp(&(b * step)));
+    }
+    parameters
+}
+
+/// Moves the nearest inner parameter to each of `angle + k pi`, or adds it where that would move one by far.
+fn add_extremes(parameters: &mut Vec<f64>, [from, to]: [f64; 2], step: f64, angle: f64) {
+    let (low, high) = (from.min(to), from.max(to));
+    let mut t = angle + PI * ((low - angle) / PI).ceil();
+    while t < high {
+        let clear = 1e-6 * step.abs();
+        let nearest =
+            (1..parameters.len() - 1).min_by(|&a, &b| (parameters[a] - t).abs().total_cmp(&(parameters[b] - t).abs()));
+        match nearest {
+            _ if t - low <= clear || high - t <= clear => {}
+            Some(i) if (parameters[i] - t).abs() <= 0.25 * step.abs() => parameters[i] = t,
+            _ => parameters.push(t),
+        }
+        t += PI;
+    }
+}
+
+/// Halves the pieces between the curve's breaks until chord and tangents are near enough.
+fn adaptive_parameters(
+    curve: &Curve,
+    at: &impl Fn(f64) -> [Vector; 3],
+    span: [f64; 2],
+    period: Option<f64>,
+    fineness: &Fineness,
+    least: usize,
+) -> Vec<f64> {
+    let stops = stops(curve, span, period);
+    let pieces = (least.max(2) / (stops.len() - 1).max(1)).max(1);
+    let mut parameters = vec![span[0]];
+    for pair in stops.windows(2) {
+        for i in 0..pieces {
+            let share = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / pieces as f64;
+            halve(at, [share(i), share(i + 1)], fineness, MAX_DEPTH, &mut parameters);
+        }
+        if parameters.len() > MAX_POINTS {
+            break;
+        }
+    }
+    *parameters.last_mut().expect("it starts with one") = span[1];
+    parameters
+}
+
+/// The ends of the span and the breaks of the curve between them, in order along the span.
+fn stops(curve: &Curve, [from, to]: [f64; 2], period: Option<f64>) -> Vec<f64> {
+    let (low, high) = (from.min(to), from.max(to));
+    let clear = 1e-9 * (high - low);
+    let mut stops = vec![low, high];
+    let breaks = curve.breaks();
+    for turn in if period.is_some() { -2..=2 } else { 0..=0 } {
+        let shift = period.unwrap_or(0.0) * f64::from(turn);
+        stops.extend(breaks.iter().map(|t| t + shift).filter(|t| *t > low + clear && *t < high - clear));
+    }
+    stops.sort_by(f64::total_cmp);
+    if from > to {
+        stops.reverse();
+    }
+    stops
+}
+
+/// Adds the end of the piece, after what is needed before it.
+fn halve(at: &impl Fn(f64) -> [Vector; 3], [a, b]: [f64; 2], fineness: &Fineness, depth: u32, out: &mut Vec<f64>) {
+    let m = 0.5 * (a + b);
+    let ([p, d, _], [q, _, _], [r, e, _]) = (at(a), at(m), at(b));
+    let chord = r - p;
+    let off = match chord.try_normalize(f64::MIN_POSITIVE) {
+        Some(direction) => (q - p - direction * direction.dot(&(q - p))).norm(),
+        None => (q - p).norm(),
+    };
+    let bent = off > 0.05 * fineness.deflection && d.cross(&e).norm().atan2(d.dot(&e)) > fineness.angle;
+    if depth > 0 && (off > fineness.deflection || bent) {
+        halve(at, [a, m], fineness, depth - 1, out);
+        halve(at, [m, b], fineness, depth - 1, out);
+    } else {
+        out.push(b);
+    }
+}
+
+/// How fine the edges and faces of a model of the given size are cut.
+impl Fineness {
+    pub fn new(options: &Options, size: f64) -> Self {
+        Self { deflection: options.deflection * size, angle: options.angle }
+    }
+}

@@ -1,0 +1,121 @@
+//! One face -> its triangles and integrals, in the coordinates of its body.
+
+use super::boundary::{self, Path};
+use super::chart::{Chart, Uv};
+use super::domain;
+use super::edges::{EdgeLines, Fineness};
+use super::fallback::planar_fill;
+use super::integrate::{Integrals, integrate, integrate_triangles};
+use crate::brep::{Face, FaceGeometry, Facets, Model, Surface};
+use crate::geometry::Point;
+
+/// Points further than this share of the model's size from their surface do not belong to it.
+const FAR: f64 = 0.01;
+/// Segments on each side of a face that is bounded by its surface's own limits.
+const RIM_SEGMENTS: usize = 24;
+
+/// What all faces of a model need.
+pub(super) struct Context<'a> {
+    pub model: &'a Model,
+    pub lines: EdgeLines,
+    /// Edges without length.
+    pub degenerate: Vec<bool>,
+    pub fineness: Fineness,
+    /// Size of the model in the coordinates of its parts, mm.
+    pub size: f64,
+    /// For each face the point that its integrals refer to.
+    pub reference: Vec<Point>,
+}
+
+/// A tessellated face.
+pub(super) struct FaceMesh {
+    pub points: Vec<Point>,
+    /// Counter-clockwise seen from the face normal's side.
+    pub triangles: Vec<[u32; 3]>,
+    pub integrals: Integrals,
+    pub reference: Point,
+    pub warning: Option<String>,
+}
+
+/// Tessellates a face, or says why it cannot be.
+pub(super) fn mesh(context: &Context, face: &Face, reference: &Point) -> Result<FaceMesh, String> {
+    let (surface, same_sense) = match &face.geometry {
+        FaceGeometry::Trimmed { surface, same_sense } => (surface, *same_sense),
+        FaceGeometry::Faceted(facets) => return faceted(facets, reference),
+    };
+    let borders = boundary::polylines(face, &context.lines, &context.degenerate);
+    let border: Vec<Point> = borders.iter().flat_map(|b| b[0].iter().copied()).collect();
+    let mut chart = Chart::new(surface, same_sense, &border, context.size);
+    match trimmed(context, surface, &mut chart, borders.clone(), reference) {
+        Ok(mesh) => Ok(mesh),
+        Err(why) => filled(context, face, borders, reference, &why),
+    }
+}
+
+fn trimmed(
+    context: &Context,
+    surface: &Surface,
+    chart: &mut Chart,
+    borders: Vec<[Vec<Point>; 2]>,
+    reference: &Point,
+) -> Result<FaceMesh, String> {
+    let far = FAR * context.size;
+    let mut paths = boundary::paths(chart, borders, context.size, far)
+        .map_err(|e| format!("an edge is {:.3} mm off the surface", e.distance))?;
+    chart.settle(&paths);
+    if paths.is_empty() && !chart.is_closed() {
+        paths.push(rim(chart, surface).ok_or("the face has no bounds and its surface is infinite")?);
+    }
+    let patch = domain::triangulate(chart, &mut paths, &context.fineness).ok_or("the loops bound no region")?;
+    let integrals = integrate(chart, &patch, &paths, reference);
+    if !(integrals.area.is_finite() && integrals.area > 0.0 && integrals.flux.is_finite()) {
+        return Err("the area is not a positive number".to_owned());
+    }
+    let turn = |t: [u32; 3]| if chart.flipped { [t[0], t[2], t[1]] } else { t };
+    let triangles = patch.triangles.into_iter().map(turn).collect();
+    Ok(FaceMesh { points: patch.points, triangles, integrals, reference: *reference, warning: None })
+}
+
+/// The border of the surface's own parameter rectangle.
+fn rim(chart: &Chart, surface: &Surface) -> Option<Path> {
+    let [u0, u1, v0, v1] = surface.domain();
+    if ![u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]];
+    let mut path = Path::default();
+    for side in 0..4 {
+        let (a, b) = (corners[side], corners[(side + 1) % 4]);
+        for i in 0..RIM_SEGMENTS {
+            let at = |i: f64| -> Uv { [0, 1].map(|k| a[k] + (b[k] - a[k]) * i / RIM_SEGMENTS as f64) };
+            path.uv.push(at(i as f64));
+            path.middles.push(at(i as f64 + 0.5));
+            path.points.push(chart.point(at(i as f64)));
+        }
+    }
+    Some(path)
+}
+
+fn filled(
+    context: &Context,
+    face: &Face,
+    borders: Vec<[Vec<Point>; 2]>,
+    reference: &Point,
+    why: &str,
+) -> Result<FaceMesh, String> {
+    let patch = planar_fill(borders, context.size, &context.fineness).ok_or_else(|| why.to_owned())?;
+    let integrals = integrate_triangles(&patch.points, &patch.triangles, reference);
+    let warning = Some(format!("face #{}: {why}; its border was filled with a plane", face.entity));
+    Ok(FaceMesh { points: patch.points, triangles: patch.triangles, integrals, reference: *reference, warning })
+}
+
+fn faceted(facets: &Facets, reference: &Point) -> Result<FaceMesh, String> {
+    let count = facets.points.len() as u32;
+    let good = |t: &&[u32; 3]| t.iter().all(|&i| i < count);
+    let triangles: Vec<_> = facets.triangles.iter().filter(good).copied().collect();
+    let integrals = integrate_triangles(&facets.points, &triangles, reference);
+    if !(integrals.area > 0.0 && integrals.area.is_finite()) {
+        return Err("the triangles have no area".to_owned());
+    }
+    Ok(FaceMesh { points: facets.points.clone(), triangles, integrals, reference: *reference, warning: None })
+}

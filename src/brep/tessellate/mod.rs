@@ -1,0 +1,119 @@
+//! B-rep -> triangles: edges first, so that both faces of an edge share its points, then each face in its
+//! parameter space.
+//!
+//! In: a [`Model`]. Out: a [`Mesh`] of all occurrences with exact areas, what was left out, and what was guessed.
+//!
+//! Method: every edge becomes one polyline. A face's loops, less its seams, are projected onto the surface, unwrapped
+//! over the periods and laid out as closed paths ([`boundary`]). Paths that go round the surface are wrapped into a
+//! strip that is cut open ([`strip`]). Polygons are cut into ears, straight-lined walls into strips; everything else
+//! is a constrained Delaunay triangulation with interior points by curvature, and the inside is found by the parity
+//! of crossings ([`domain`]). Area, centroid and flux are integrals over the true trimmed surface ([`integrate`]).
+//!
+//! Cost: linear in edges and faces; a Delaunay face of n points takes O(n log n).
+//!
+//! It does not promise: that free-form silhouettes are nearer than the deflection; that a face whose edges do not
+//! lie on its surface has the right shape (it is filled with a plane, with a warning).
+
+mod boundary;
+mod chart;
+mod domain;
+mod edges;
+mod face;
+mod fallback;
+mod integrate;
+mod interior;
+mod place;
+mod sphere;
+mod strip;
+mod triangulate;
+
+#[cfg(test)]
+mod tests;
+
+use rayon::prelude::*;
+
+use super::{EdgeId, Face, Mesh, Model, Skipped};
+use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::{Aabb, Point};
+use edges::{EdgeLines, Fineness};
+use face::{Context, FaceMesh};
+
+/// How finely models are tessellated.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Largest distance between a chord and its edge or surface, as a share of the diagonal of the model's box.
+    /// 0.001 is half a pixel of a silhouette of 512 pixels.
+    pub deflection: f64,
+    /// Largest angle between neighbouring chords, radians. 0.35 (20 degrees) keeps small holes round.
+    pub angle: f64,
+    /// Triangles of one model at most, over all occurrences; faces beyond are left out and reported. Bounds the
+    /// memory at about half a gigabyte.
+    pub max_triangles: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { deflection: 0.001, angle: 0.35, max_triangles: 8_000_000 }
+    }
+}
+
+/// Models with fewer faces than this are not worth more than one thread.
+const PARALLEL_FACES: usize = 400;
+
+/// The mesh of all placed faces, the faces left out (with the reason), and warnings.
+///
+/// # Errors
+/// Only when cancelled.
+pub fn tessellate(
+    model: &Model,
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<(Mesh, Vec<Skipped>, Vec<String>), Cancelled> {
+    let spans: Vec<_> = (0..model.edges.len()).map(|e| model.edge_span(EdgeId(e as u32))).collect();
+    let boxes = place::boxes(model, &spans);
+    let size = place::model_box(model, &boxes).diagonal();
+    if size.is_nan() || size <= 0.0 || size.is_infinite() {
+        let why = "the model has no extent".to_owned();
+        return Ok((Mesh::default(), all_skipped(model, &why), vec![why]));
+    }
+    let part_size = size / place::largest_scale(model);
+    let fineness = Fineness::new(options, part_size);
+    let lines = EdgeLines::of(model, &spans, &fineness, cancel)?;
+    let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
+    let context = Context { model, lines, degenerate, fineness, size: part_size, reference: references(model, &boxes) };
+    let faces = face_meshes(&context, cancel)?;
+    Ok(place::place(model, faces, options.max_triangles, cancel)?.finish())
+}
+
+fn all_skipped(model: &Model, why: &str) -> Vec<Skipped> {
+    model.faces.iter().map(|f| Skipped { entity: f.entity, why: why.to_owned() }).collect()
+}
+
+fn is_point(lines: &EdgeLines, edge: EdgeId, tolerance: f64) -> bool {
+    let (points, middles) = lines.line(edge);
+    points.iter().chain(middles).all(|p| (p - points[0]).norm() <= tolerance)
+}
+
+/// The reference point of each face: the centre of its body's box.
+fn references(model: &Model, boxes: &[Aabb]) -> Vec<Point> {
+    let mut points = vec![Point::origin(); model.faces.len()];
+    for (body, aabb) in model.bodies.iter().zip(boxes) {
+        let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
+        faces.filter(|_| !aabb.is_empty()).for_each(|f| points[f.index()] = aabb.centre());
+    }
+    points
+}
+
+fn face_meshes(context: &Context, cancel: &Cancel) -> Result<Vec<Result<FaceMesh, String>>, Cancelled> {
+    let one = |(index, face): (usize, &Face)| {
+        cancel.check()?;
+        Ok(face::mesh(context, face, &context.reference[index]))
+    };
+    let faces = &context.model.faces;
+    if faces.len() < PARALLEL_FACES {
+        faces.iter().enumerate().map(one).collect()
+    } else {
+        faces.par_iter().enumerate().map(one).collect()
+    }
+}

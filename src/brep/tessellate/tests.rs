@@ -1,0 +1,324 @@
+//! Models built by hand, with areas and volumes worked by hand.
+
+use super::*;
+use crate::brep::measure::measure;
+use crate::brep::nurbs::NurbsSurface;
+use crate::brep::{
+    Body, BodyId, Curve, Edge, EdgeUse, FaceGeometry, FaceId, FaceLoop, Occurrence, Placement, Shell, Surface, Vertex,
+    VertexId,
+};
+use crate::geometry::{Isometry, Plane, Transform, Vector};
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::sync::Arc;
+
+/// The global axes at a height.
+fn at_height(z: f64) -> Placement {
+    Placement { origin: Point::new(0.0, 0.0, z), x: Vector::x(), y: Vector::y(), z: Vector::z() }
+}
+
+struct Builder(Model);
+
+impl Builder {
+    fn new() -> Self {
+        let mut model = Model::empty();
+        model.shells = vec![Shell { entity: 0, closed: true, faces: vec![] }];
+        model.bodies = vec![Body { entity: 0, solid: true, shells: vec![0] }];
+        let placement = Transform::identity();
+        model.occurrences = vec![Occurrence { path: String::new(), body: BodyId(0), placement }];
+        Self(model)
+    }
+
+    fn vertex(&mut self, x: f64, y: f64, z: f64) -> VertexId {
+        self.0.vertices.push(Vertex { entity: 0, point: Point::new(x, y, z) });
+        VertexId(self.0.vertices.len() as u32 - 1)
+    }
+
+    fn edge(&mut self, start: VertexId, end: VertexId, curve: Option<Curve>) -> EdgeId {
+        self.0.edges.push(Edge { entity: 0, curve: curve.map(Arc::new), start, end, same_sense: true });
+        EdgeId(self.0.edges.len() as u32 - 1)
+    }
+
+    /// The circle at height z, from and to (radius, 0, z).
+    fn circle(&mut self, radius: f64, z: f64) -> (EdgeId, VertexId) {
+        let vertex = self.vertex(radius, 0.0, z);
+        (self.edge(vertex, vertex, Some(Curve::Circle { placement: at_height(z), radius })), vertex)
+    }
+
+    /// `loops`: edges with their direction.
+    fn face(&mut self, surface: Surface, same_sense: bool, loops: &[&[(EdgeId, bool)]]) {
+        let uses = |l: &[(EdgeId, bool)]| l.iter().map(|&(edge, forward)| EdgeUse { edge, forward }).collect();
+        let one = |l: &&[(EdgeId, bool)]| FaceLoop { entity: 0, uses: uses(l), pole: None, outer: false };
+        let geometry = FaceGeometry::Trimmed { surface: Arc::new(surface), same_sense };
+        let loops = loops.iter().map(one).collect();
+        self.0.faces.push(Face { entity: self.0.faces.len() as u64 + 1, geometry, loops, shell: 0 });
+        self.0.shells[0].faces.push(FaceId(self.0.faces.len() as u32 - 1));
+    }
+
+    /// Discs that close a body of revolution.
+    fn discs(&mut self, bottom: Option<(EdgeId, f64)>, top: Option<(EdgeId, f64)>) {
+        if let Some((edge, z)) = bottom {
+            self.face(Surface::Plane(at_height(z)), false, &[&[(edge, false)]]);
+        }
+        if let Some((edge, z)) = top {
+            self.face(Surface::Plane(at_height(z)), true, &[&[(edge, true)]]);
+        }
+    }
+
+    fn check(&self, area: f64, volume: f64) -> Mesh {
+        let (mesh, skipped, warnings) = tessellate(&self.0, &Options::default(), &Cancel::new()).unwrap();
+        assert_eq!((skipped, warnings), (vec![], vec![]));
+        let measures = measure(&self.0, &mesh);
+        assert!((measures.area / area - 1.0).abs() < 1e-4, "area {} for {area}", measures.area);
+        assert!((measures.volume / volume - 1.0).abs() < 1e-4, "volume {} for {volume}", measures.volume);
+        let plain: f64 = (0..mesh.triangles.len()).map(|t| 0.5 * mesh.doubled_normal(t).norm()).sum();
+        assert!((plain / area - 1.0).abs() < 0.02, "triangles {plain} for {area}");
+        assert_closed(&mesh);
+        mesh
+    }
+}
+
+/// Every side of a triangle belongs to one more triangle, which runs along it the other way.
+fn assert_closed(mesh: &Mesh) {
+    let mut ids = BTreeMap::new();
+    let mut id = |p: &Point| {
+        let key = [p.x, p.y, p.z].map(|c| (c * 1e7).round() as i64);
+        let next = ids.len();
+        *ids.entry(key).or_insert(next)
+    };
+    let mut sides: BTreeMap<(usize, usize), i32> = BTreeMap::new();
+    for t in 0..mesh.triangles.len() {
+        let [a, b, c] = mesh.corners(t).map(|p| id(&p));
+        if a != b && b != c && c != a {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *sides.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+    }
+    let open = sides.values().filter(|n| **n != 0).count();
+    assert_eq!(open, 0, "{open} sides are not closed");
+}
+
+#[test]
+fn a_box_is_exact() {
+    let mut b = Builder::new();
+    let v: Vec<_> =
+        (0..8).map(|i| b.vertex(f64::from(i & 1), f64::from(i >> 1 & 1) * 2.0, f64::from(i >> 2) * 3.0)).collect();
+    let mut edges = BTreeMap::new();
+    let corners = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    for c in corners {
+        let uses: Vec<_> = (0..4)
+            .map(|i| {
+                let (from, to) = (c[i], c[(i + 1) % 4]);
+                let key = (from.min(to), from.max(to));
+                let edge = *edges.entry(key).or_insert_with(|| b.edge(v[key.0], v[key.1], None));
+                (edge, from < to)
+            })
+            .collect();
+        let [p, q, r] = [c[0], c[1], c[3]].map(|i| b.0.vertices[i].point);
+        let (x, y) = ((q - p).normalize(), (r - p).normalize());
+        b.face(Surface::Plane(Placement { origin: p, x, y, z: x.cross(&y) }), true, &[&uses]);
+    }
+    let mesh = b.check(22.0, 6.0);
+    assert_eq!(mesh.triangles.len(), 12);
+    let measures = measure(&b.0, &mesh);
+    assert!((measures.centroid - Point::new(0.5, 1.0, 1.5)).norm() < 1e-12);
+    assert!((measures.tolerance.size() - 14.0_f64.sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn a_cylinder_needs_no_seam() {
+    for seam in [false, true] {
+        let mut b = Builder::new();
+        let ((bottom, v0), (top, v1)) = (b.circle(2.0, 0.0), b.circle(2.0, 5.0));
+        let wall = Surface::Cylinder { placement: at_height(0.0), radius: 2.0 };
+        if seam {
+            let seam = b.edge(v0, v1, None);
+            b.face(wall, true, &[&[(bottom, true), (seam, true), (top, false), (seam, false)]]);
+        } else {
+            b.face(wall, true, &[&[(bottom, true)], &[(top, false)]]);
+        }
+        b.discs(Some((bottom, 0.0)), Some((top, 5.0)));
+        let mesh = b.check(PI * 28.0, PI * 20.0);
+        let bounds = measure(&b.0, &mesh).bounds;
+        assert!((bounds.min - Point::new(-2.0, -2.0, 0.0)).norm() < 1e-12);
+        assert!((bounds.max - Point::new(2.0, 2.0, 5.0)).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn a_mirrored_occurrence_keeps_its_outside_outside() {
+    let mut b = Builder::new();
+    let ((bottom, _), (top, _)) = (b.circle(2.0, 0.0), b.circle(2.0, 5.0));
+    b.face(Surface::Cylinder { placement: at_height(0.0), radius: 2.0 }, true, &[&[(bottom, true)], &[(top, false)]]);
+    b.discs(Some((bottom, 0.0)), Some((top, 5.0)));
+    let mirror = Isometry::reflection(&Plane::through(&Point::new(7.0, 0.0, 0.0), &Vector::new(1.0, 2.0, 0.5)));
+    b.0.occurrences[0].placement = mirror.as_transform();
+    let mesh = b.check(PI * 28.0, PI * 20.0);
+    let flux: f64 =
+        (0..mesh.triangles.len()).map(|t| mesh.corners(t)[0].coords.dot(&mesh.doubled_normal(t)) / 6.0).sum();
+    assert!((flux / (PI * 20.0) - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn a_cylinder_wall_may_have_a_window_across_the_seam() {
+    let mut b = Builder::new();
+    let ((bottom, _), (top, _)) = (b.circle(1.0, 0.0), b.circle(1.0, 3.0));
+    let corner = |u: f64, z: f64| [u.cos(), u.sin(), z];
+    let at = [corner(-0.5, 1.0), corner(0.5, 1.0), corner(0.5, 2.0), corner(-0.5, 2.0)];
+    let v = at.map(|[x, y, z]| b.vertex(x, y, z));
+    let arc = |z| Some(Curve::Circle { placement: at_height(z), radius: 1.0 });
+    let window = [
+        b.edge(v[0], v[1], arc(1.0)),
+        b.edge(v[1], v[2], None),
+        b.edge(v[3], v[2], arc(2.0)),
+        b.edge(v[3], v[0], None),
+    ];
+    let hole = [(window[3], false), (window[2], true), (window[1], false), (window[0], false)];
+    let wall = Surface::Cylinder { placement: at_height(0.0), radius: 1.0 };
+    b.face(wall, true, &[&hole, &[(top, false)], &[(bottom, true)]]);
+    let (mesh, skipped, _) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
+    assert!(skipped.is_empty());
+    assert!((mesh.faces[0].area / (TAU * 3.0 - 1.0) - 1.0).abs() < 1e-4, "{}", mesh.faces[0].area);
+}
+
+#[test]
+fn whole_spheres_and_tori_need_no_bounds() {
+    let mut b = Builder::new();
+    b.face(Surface::Sphere { placement: at_height(1.0), radius: 3.0 }, true, &[]);
+    b.check(36.0 * PI, 36.0 * PI);
+    let mut b = Builder::new();
+    b.face(Surface::Torus { placement: at_height(1.0), major: 5.0, minor: 2.0 }, true, &[]);
+    b.check(40.0 * PI * PI, 40.0 * PI * PI);
+}
+
+#[test]
+fn a_half_sphere_knows_its_half() {
+    for upper in [true, false] {
+        let mut b = Builder::new();
+        let (equator, _) = b.circle(2.0, 0.0);
+        b.face(Surface::Sphere { placement: at_height(0.0), radius: 2.0 }, true, &[&[(equator, upper)]]);
+        let disc = Some((equator, 0.0));
+        if upper {
+            b.discs(disc, None)
+        } else {
+            b.discs(None, disc)
+        }
+        let mesh = b.check(12.0 * PI, 16.0 / 3.0 * PI);
+        let up = mesh.faces[0].centroid.z;
+        assert!((up - if upper { 1.0 } else { -1.0 }).abs() < 1e-3, "centroid {up}");
+    }
+}
+
+#[test]
+fn a_half_sphere_may_be_cut_through_its_poles() {
+    let mut b = Builder::new();
+    let vertex = b.vertex(2.0, 0.0, 0.0);
+    let upright = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::z(), z: -Vector::y() };
+    let rim = b.edge(vertex, vertex, Some(Curve::Circle { placement: upright, radius: 2.0 }));
+    b.face(Surface::Sphere { placement: at_height(0.0), radius: 2.0 }, true, &[&[(rim, true)]]);
+    b.face(Surface::Plane(upright), false, &[&[(rim, false)]]);
+    let mesh = b.check(12.0 * PI, 16.0 / 3.0 * PI);
+    assert!((mesh.faces[0].centroid.y + 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_cone_runs_to_its_apex() {
+    for seam in [false, true] {
+        let mut b = Builder::new();
+        let (base, v) = b.circle(3.0, 0.0);
+        let surface = Surface::Cone { placement: at_height(0.0), radius: 3.0, half_angle: -(0.75_f64).atan() };
+        if seam {
+            let apex = b.vertex(0.0, 0.0, 4.0);
+            let seam = b.edge(v, apex, None);
+            b.face(surface, true, &[&[(base, true), (seam, true), (seam, false)]]);
+        } else {
+            b.face(surface, true, &[&[(base, true)]]);
+        }
+        b.discs(Some((base, 0.0)), None);
+        b.check(24.0 * PI, 12.0 * PI);
+    }
+}
+
+#[test]
+fn a_cone_sector_meets_the_apex() {
+    // Three quarters of the cone of radius 3 and height 4 between two walls.
+    let mut b = Builder::new();
+    let (p, q, apex) = (b.vertex(3.0, 0.0, 0.0), b.vertex(0.0, -3.0, 0.0), b.vertex(0.0, 0.0, 4.0));
+    let arc = b.edge(p, q, Some(Curve::Circle { placement: at_height(0.0), radius: 3.0 }));
+    let (up, down) = (b.edge(q, apex, None), b.edge(apex, p, None));
+    let surface = Surface::Cone { placement: at_height(0.0), radius: 3.0, half_angle: -(0.75_f64).atan() };
+    b.face(surface, true, &[&[(arc, true), (up, true), (down, true)]]);
+    let (mesh, ..) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
+    assert!((mesh.faces[0].area / (0.75 * 15.0 * PI) - 1.0).abs() < 1e-4, "{}", mesh.faces[0].area);
+}
+
+#[test]
+fn an_octant_of_a_sphere_has_an_eighth_of_its_area() {
+    let mut b = Builder::new();
+    let v = [b.vertex(1.0, 0.0, 0.0), b.vertex(0.0, 1.0, 0.0), b.vertex(0.0, 0.0, 1.0)];
+    let axes = [Vector::x(), Vector::y(), Vector::z()];
+    let edges: Vec<_> = (0..3)
+        .map(|i| {
+            let (x, y) = (axes[i], axes[(i + 1) % 3]);
+            let placement = Placement { origin: Point::origin(), x, y, z: x.cross(&y) };
+            (b.edge(v[i], v[(i + 1) % 3], Some(Curve::Circle { placement, radius: 1.0 })), true)
+        })
+        .collect();
+    b.face(Surface::Sphere { placement: at_height(0.0), radius: 1.0 }, true, &[&edges]);
+    let (mesh, ..) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
+    assert!((mesh.faces[0].area / FRAC_PI_2 - 1.0).abs() < 1e-4, "{}", mesh.faces[0].area);
+}
+
+#[test]
+fn a_bilinear_patch_without_bounds_uses_its_domain() {
+    let mut b = Builder::new();
+    let points = [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [3.0, 0.0, 0.0], [3.0, 2.0, 0.0]].map(Point::from).to_vec();
+    let knots = vec![0.0, 0.0, 1.0, 1.0];
+    b.face(
+        Surface::Nurbs(NurbsSurface {
+            degree_u: 1,
+            degree_v: 1,
+            knots_u: knots.clone(),
+            knots_v: knots,
+            columns: 2,
+            points,
+            weights: vec![],
+        }),
+        true,
+        &[],
+    );
+    let (mesh, skipped, _) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
+    assert!(skipped.is_empty());
+    assert!((mesh.faces[0].area - 6.0).abs() < 1e-9);
+}
+
+#[test]
+fn edges_far_from_their_surface_are_filled_with_a_plane() {
+    let mut b = Builder::new();
+    let (rim, _) = b.circle(1.0, 0.0);
+    b.face(Surface::Plane(at_height(50.0)), true, &[&[(rim, true)]]);
+    let (mesh, skipped, warnings) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
+    assert_eq!((mesh.faces.len(), skipped.len(), warnings.len()), (1, 0, 1));
+    assert!((mesh.faces[0].area / PI - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn a_face_without_extent_is_skipped_with_its_number() {
+    let mut b = Builder::new();
+    let (rim, _) = b.circle(1.0, 0.0);
+    b.face(Surface::Plane(at_height(0.0)), true, &[&[(rim, true)]]);
+    b.face(Surface::Plane(at_height(0.0)), true, &[]);
+    let (mesh, skipped, _) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
+    assert_eq!(mesh.faces.len(), 1);
+    assert_eq!(skipped[0].entity, 2);
+}
+
+#[test]
+fn cancelling_stops_the_work() {
+    let mut b = Builder::new();
+    b.face(Surface::Sphere { placement: at_height(0.0), radius: 1.0 }, true, &[]);
+    let cancel = Cancel::new();
+    cancel.cancel();
+    assert!(tessellate(&b.0, &Options::default(), &cancel).is_err());
+}

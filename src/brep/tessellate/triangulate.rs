@@ -1,0 +1,199 @@
+//! Points and segments in the plane -> triangles: ears for polygons, constrained Delaunay for the rest, and strips
+//! between two monotone chains.
+
+use earcut::Earcut;
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+use std::cell::Cell;
+use std::collections::VecDeque;
+
+use super::chart::Uv;
+
+/// How much the triangles' area may differ from the polygon's, as a share.
+const AREA_SLACK: f64 = 1e-6;
+
+/// Triangles of a polygon with holes, all counter-clockwise; `rings`: where each ring starts, the outer one first,
+/// `area`: what they must add up to. `None` where the rings cut each other and the areas differ.
+pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32; 3]>> {
+    let holes: Vec<u32> = rings.iter().skip(1).map(|&r| r as u32).collect();
+    let mut indices: Vec<u32> = Vec::with_capacity(3 * points.len());
+    Earcut::new().earcut(points.iter().copied(), &holes, &mut indices);
+    let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
+    let mut sum = 0.0;
+    for t in &mut triangles {
+        let twice = doubled_area(points, t);
+        if twice < 0.0 {
+            t.swap(1, 2);
+        }
+        sum += 0.5 * twice.abs();
+    }
+    ((sum - area).abs() <= AREA_SLACK * area).then_some(triangles)
+}
+
+/// Twice the signed area of a triangle.
+pub(super) fn doubled_area(points: &[Uv], [a, b, c]: &[u32; 3]) -> f64 {
+    let [a, b, c] = [a, b, c].map(|i| points[*i as usize]);
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Triangles between a lower and an upper chain, both with growing u. `None` where one of them turns out clockwise,
+/// wider than `widest` in u, or the areas do not add up to `area`.
+pub(super) fn zip(points: &[Uv], lower: &[u32], upper: &[u32], area: f64, widest: f64) -> Option<Vec<[u32; 3]>> {
+    let u = |i: u32| points[i as usize][0];
+    let (mut i, mut j) = (0, 0);
+    let mut triangles = Vec::with_capacity(lower.len() + upper.len());
+    let mut sum = 0.0;
+    while i + 1 < lower.len() || j + 1 < upper.len() {
+        let lower_next = j + 1 >= upper.len() || (i + 1 < lower.len() && u(lower[i + 1]) <= u(upper[j + 1]));
+        let third = if lower_next { lower[i + 1] } else { upper[j + 1] };
+        let triangle = [lower[i], third, upper[j]];
+        if lower_next {
+            i += 1;
+        } else {
+            j += 1;
+        }
+        if triangle[0] == triangle[2] || triangle[0] == triangle[1] || triangle[1] == triangle[2] {
+            continue;
+        }
+        let twice = doubled_area(points, &triangle);
+        let [a, b, c] = triangle.map(u);
+        if twice < -1e-9 * area || a.max(b).max(c) - a.min(b).min(c) > widest {
+            return None;
+        }
+        sum += 0.5 * twice;
+        triangles.push(triangle);
+    }
+    ((sum - area).abs() <= AREA_SLACK * area).then_some(triangles)
+}
+
+struct Site {
+    position: Point2<f64>,
+    index: u32,
+}
+
+impl HasPosition for Site {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.position
+    }
+}
+
+type Delaunay = ConstrainedDelaunayTriangulation<Site>;
+
+/// A triangulation of the convex hull, cut into regions by the segments.
+pub(super) struct Cut {
+    /// Counter-clockwise; indices from the number of given points on mean `added`.
+    pub triangles: Vec<[u32; 3]>,
+    /// The region of each triangle.
+    pub regions: Vec<u32>,
+    /// The largest triangle of each region.
+    pub largest: Vec<u32>,
+    /// Points where segments cross.
+    pub added: Vec<Uv>,
+}
+
+/// Constrained Delaunay triangulation; segments that cross are split. `None` for points that cannot be used.
+pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]]) -> Option<Cut> {
+    let tidy = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
+    let site = |(i, p): (usize, &Uv)| Site { position: Point2::new(tidy(p[0]), tidy(p[1])), index: i as u32 };
+    if points.iter().any(|p| !(p[0].abs() < 1e30 && p[1].abs() < 1e30)) {
+        return None;
+    }
+    let sites = points.iter().enumerate().map(site).collect();
+    let edges = segments.iter().filter(|s| s[0] != s[1]).map(|s| s.map(|i| i as usize)).collect();
+    let mut conflicts = Vec::new();
+    let mut mesh = Delaunay::try_bulk_load_cdt(sites, edges, |e| conflicts.push(e)).ok()?;
+    let next = Cell::new(points.len() as u32);
+    for [from, to] in conflicts {
+        let handles = [from, to].map(spade::handles::FixedVertexHandle::from_index);
+        mesh.add_constraint_and_split(handles[0], handles[1], |position| {
+            let index = next.get();
+            next.set(index + 1);
+            Site { position, index }
+        });
+    }
+    let mut added = vec![[0.0; 2]; next.get() as usize - points.len()];
+    for vertex in mesh.vertices() {
+        if let Some(at) = (vertex.data().index as usize).checked_sub(points.len()) {
+            added[at] = [vertex.position().x, vertex.position().y];
+        }
+    }
+    Some(regions(&mesh, added))
+}
+
+/// Floods the triangles between constraint edges.
+fn regions(mesh: &Delaunay, added: Vec<Uv>) -> Cut {
+    let count = mesh.num_inner_faces();
+    let mut triangles = Vec::with_capacity(count);
+    for face in mesh.inner_faces() {
+        triangles.push(face.vertices().map(|v| v.data().index));
+    }
+    const NONE: u32 = u32::MAX;
+    let mut labels = vec![NONE; count];
+    let mut largest = Vec::new();
+    let mut queue = VecDeque::new();
+    // Inner faces are numbered from 1: 0 is the outer one.
+    for face in mesh.inner_faces() {
+        if labels[face.fix().index() - 1] != NONE {
+            continue;
+        }
+        let label = largest.len() as u32;
+        let mut best = (f64::NEG_INFINITY, 0);
+        labels[face.fix().index() - 1] = label;
+        queue.push_back(face);
+        while let Some(at) = queue.pop_front() {
+            best = if at.area() > best.0 { (at.area(), at.fix().index() as u32 - 1) } else { best };
+            for edge in at.adjacent_edges() {
+                if edge.is_constraint_edge() {
+                    continue;
+                }
+                if let Some(next) = edge.rev().face().as_inner()
+                    && labels[next.fix().index() - 1] == NONE
+                {
+                    labels[next.fix().index() - 1] = label;
+                    queue.push_back(next);
+                }
+            }
+        }
+        largest.push(best.1);
+    }
+    Cut { triangles, regions: labels, largest, added }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_with_a_square_hole_is_cut_into_two_regions() {
+        let square = |a: f64| [[-a, -a], [a, -a], [a, a], [-a, a]];
+        let points: Vec<Uv> = square(2.0).into_iter().chain(square(1.0)).collect();
+        let ring = |s: u32| (0..4).map(move |i| [s + i, s + (i + 1) % 4]);
+        let segments: Vec<_> = ring(0).chain(ring(4)).collect();
+        let cut = delaunay(&points, &segments).unwrap();
+        let area = |region| {
+            let inside = cut.triangles.iter().zip(&cut.regions).filter(move |t| *t.1 == region);
+            inside.map(|t| 0.5 * doubled_area(&points, t.0)).sum::<f64>()
+        };
+        let mut areas: Vec<f64> = (0..cut.largest.len() as u32).map(area).collect();
+        areas.sort_by(f64::total_cmp);
+        assert_eq!(areas, [4.0, 12.0]);
+        assert_eq!(ears(&points, &[0, 4], 12.0).unwrap().len(), 8);
+    }
+
+    #[test]
+    fn crossing_segments_are_split() {
+        let points = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
+        let cut = delaunay(&points, &[[0, 1], [2, 3]]).unwrap();
+        assert_eq!(cut.added, [[0.5, 0.5]]);
+        assert_eq!(cut.triangles.len(), 4);
+    }
+
+    #[test]
+    fn chains_are_zipped() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 1.0]];
+        let triangles = zip(&points, &[0, 1, 2], &[3, 4], 2.0, 3.0).unwrap();
+        assert_eq!(triangles, [[0, 1, 3], [1, 2, 3], [2, 4, 3]]);
+        assert!(zip(&points, &[0, 1, 2], &[3, 4], 2.0, 1.0).is_none(), "triangles too wide");
+    }
+}
