@@ -1,1 +1,230 @@
-//! Nearest neighbours in a store.
+//! Nearest neighbours in a store: exact, by the distances of eq. 8.
+
+mod page;
+
+pub use page::{Asked, write_page};
+
+use crate::alignment::Method;
+use crate::distance;
+use crate::error::{Result, RunError};
+use crate::stages::descriptor::{MAGNITUDES, PHASES};
+use crate::stages::merge::Label;
+use crate::stages::projection_sweep::Source;
+use crate::store::{Store, Summary};
+use rayon::prelude::*;
+use std::fmt;
+use std::str::FromStr;
+
+/// Rows that a thread looks through at a time.
+const CHUNK: usize = 4096;
+
+/// The two descriptors of a model in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// The magnitudes of the Fourier coefficients: blind to turns and mirrors in the picture plane.
+    Magnitude,
+    /// The complex coefficients, compared under the best signs of the axes.
+    Phase,
+}
+
+/// A frame and a descriptor: "symmetry", or "symmetry:phase" for the phases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Name {
+    pub frame: Method,
+    pub kind: Kind,
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let suffix = if self.kind == Kind::Phase { ":phase" } else { "" };
+        write!(f, "{}{suffix}", self.frame.name())
+    }
+}
+
+impl FromStr for Name {
+    type Err = String;
+
+    fn from_str(text: &str) -> std::result::Result<Self, String> {
+        let (frame, kind) = match text.strip_suffix(":phase") {
+            Some(frame) => (frame, Kind::Phase),
+            None => (text, Kind::Magnitude),
+        };
+        let frame = Method::ALL.into_iter().find(|method| method.name() == frame);
+        frame.map(|frame| Self { frame, kind }).ok_or(format!("there is no method `{text}`"))
+    }
+}
+
+/// All that a store can be searched by: the magnitudes of its frames, then the phases.
+pub fn names(store: &Store) -> Vec<Name> {
+    let of = |kind| store.methods().iter().map(move |&frame| Name { frame, kind });
+    of(Kind::Magnitude).chain(of(Kind::Phase)).collect()
+}
+
+/// The descriptors of all models of a store, one row a model, and how they are compared.
+#[derive(Clone, Copy)]
+pub struct Rows<'a> {
+    values: &'a [f32],
+    length: usize,
+    kind: Kind,
+}
+
+impl<'a> Rows<'a> {
+    /// The rows of `name`.
+    ///
+    /// # Errors
+    /// A frame that the store does not hold, named with those that it does.
+    pub fn of(store: &'a Store, name: Name) -> Result<Self> {
+        let (values, length) = match name.kind {
+            Kind::Magnitude => (store.magnitudes(name.frame), MAGNITUDES),
+            Kind::Phase => (store.phases(name.frame), PHASES),
+        };
+        let values = values.ok_or_else(|| {
+            let known: Vec<_> = store.methods().iter().map(|method| method.name()).collect();
+            RunError::Usage(format!("the store has no frame `{}`, only {}", name.frame.name(), known.join(", ")))
+        })?;
+        Ok(Self { values, length, kind: name.kind })
+    }
+
+    /// The descriptor of model `i`.
+    pub fn row(&self, i: usize) -> &'a [f32] {
+        &self.values[i * self.length..(i + 1) * self.length]
+    }
+
+    /// The distance of two descriptors: the sum of the three views', smaller is more alike.
+    pub fn distance(&self, a: &[f32], b: &[f32]) -> f64 {
+        match self.kind {
+            Kind::Magnitude => distance::magnitude(a, b),
+            Kind::Phase => distance::phase(a, b),
+        }
+    }
+
+    /// The distances of the three views, which add up to [`Rows::distance`].
+    pub fn views(&self, a: &[f32], b: &[f32]) -> [f64; 3] {
+        match self.kind {
+            Kind::Magnitude => distance::magnitude_views(a, b),
+            Kind::Phase => distance::phase_views(a, b),
+        }
+    }
+
+    /// The `k` models nearest to `descriptor`, nearest first, equally near ones in the order of the store.
+    ///
+    /// # Errors
+    /// A descriptor of another length, or distances that are not numbers.
+    pub fn nearest(&self, descriptor: &[f32], k: usize) -> Result<Vec<Hit>> {
+        if descriptor.len() != self.length {
+            let (expected, got) = (self.length, descriptor.len());
+            return Err(RunError::Usage(format!("a descriptor of {expected} numbers is needed, this one has {got}")));
+        }
+        let nearest = |chunk: usize, rows: &[f32]| {
+            let distances = rows.chunks_exact(self.length).map(|row| self.distance(descriptor, row));
+            let first = chunk * CHUNK;
+            smallest(distances.enumerate().map(|(i, distance)| (distance, first + i)).collect(), k)
+        };
+        let chunks = self.values.par_chunks(CHUNK * self.length).enumerate();
+        let found: Vec<_> = chunks.flat_map_iter(|(chunk, rows)| nearest(chunk, rows)).collect();
+        if found.iter().any(|(distance, _)| distance.is_nan()) {
+            return Err(RunError::Usage("a distance is not a number".into()));
+        }
+        let hit = |(distance, row): (f64, usize)| Hit { row, distance, views: self.views(descriptor, self.row(row)) };
+        Ok(smallest(found, k).into_iter().map(hit).collect())
+    }
+}
+
+/// A model found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Its row in the store.
+    pub row: usize,
+    pub distance: f64,
+    /// The distances of the three views.
+    pub views: [f64; 3],
+}
+
+/// The `k` models of `store` nearest to `descriptor` (magnitudes or phases, as the store holds them), nearest first.
+///
+/// # Errors
+/// A frame that the store does not hold; a descriptor of another length.
+pub fn query(store: &Store, descriptor: &[f32], k: usize, name: Name) -> Result<Vec<Hit>> {
+    Rows::of(store, name)?.nearest(descriptor, k)
+}
+
+/// What symmetry was found in a model, in a few words.
+pub fn in_words(summary: &Summary) -> String {
+    let share = summary.planes.first().map_or(0.0, |plane| plane.coverage);
+    let found = match summary.label {
+        Label::Exact => "exact mirror symmetry".to_owned(),
+        Label::NearGlobal => format!("near-global symmetry, {:.1} %", 100.0 * share),
+        Label::Partial => format!("partial symmetry, {:.0} %", 100.0 * share),
+        Label::None => "no mirror symmetry".to_owned(),
+    };
+    match summary.source {
+        Source::Symmetry => found,
+        Source::Rectilinearity => format!("{found}, frame by rectilinearity"),
+        Source::Cpca => format!("{found}, frame by continuous PCA"),
+    }
+}
+
+/// The `k` smallest, in order; NaN comes first so that it is seen.
+fn smallest(mut distances: Vec<(f64, usize)>, k: usize) -> Vec<(f64, usize)> {
+    let key = |distance: f64| if distance.is_nan() { f64::NEG_INFINITY } else { distance };
+    let order = |a: &(f64, usize), b: &(f64, usize)| key(a.0).total_cmp(&key(b.0)).then(a.1.cmp(&b.1));
+    if k < distances.len() && k > 0 {
+        distances.select_nth_unstable_by(k - 1, order);
+    }
+    distances.truncate(k);
+    distances.sort_unstable_by(order);
+    distances
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Magnitude rows whose first numbers are given, the rest 0: distances are differences of these.
+    fn values(firsts: &[f32]) -> Vec<f32> {
+        let row = |&first: &f32| std::iter::once(first).chain(vec![0.0; MAGNITUDES - 1]).collect::<Vec<_>>();
+        firsts.iter().flat_map(row).collect()
+    }
+
+    fn rows(values: &[f32]) -> Rows<'_> {
+        Rows { values, length: MAGNITUDES, kind: Kind::Magnitude }
+    }
+
+    #[test]
+    fn the_nearest_come_first_and_equal_ones_in_order() {
+        let values = values(&[5.0, 1.0, 3.0, 1.0, 9.0]);
+        let hits = rows(&values).nearest(&values[..MAGNITUDES], 3).unwrap();
+        assert_eq!(hits.iter().map(|hit| (hit.row, hit.distance)).collect::<Vec<_>>(), [(0, 0.0), (2, 2.0), (1, 4.0)]);
+        assert_eq!(hits[1].views, [2.0, 0.0, 0.0]);
+        let all = rows(&values).nearest(&values[..MAGNITUDES], 99).unwrap();
+        assert_eq!(all.iter().map(|hit| hit.row).collect::<Vec<_>>(), [0, 2, 1, 3, 4]);
+    }
+
+    #[test]
+    fn other_descriptors_and_nan_are_refused() {
+        let values = values(&[1.0, f32::NAN, 2.0]);
+        assert!(rows(&values).nearest(&[1.0], 1).is_err());
+        assert!(rows(&values).nearest(&values[..MAGNITUDES], 1).is_err());
+        assert!(rows(&values).nearest(&values[..MAGNITUDES], 0).unwrap().is_empty());
+    }
+
+    #[test]
+    fn names_come_back() {
+        for text in ["symmetry", "cpca:phase"] {
+            assert_eq!(text.parse::<Name>().unwrap().to_string(), text);
+        }
+        assert!("magic".parse::<Name>().is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn chunks_find_what_sorting_finds(firsts in proptest::collection::vec(0..9u8, 1..40), k in 1..12usize) {
+            let mut sorted: Vec<_> = firsts.iter().enumerate().map(|(i, &d)| (f64::from(d), i)).collect();
+            let found = smallest(sorted.clone(), k);
+            sorted.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap());
+            sorted.truncate(k);
+            prop_assert_eq!(found, sorted);
+        }
+    }
+}

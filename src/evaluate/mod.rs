@@ -14,14 +14,15 @@ pub mod labels;
 pub mod measures;
 pub mod precision_recall;
 pub mod ranking;
-
+pub mod report;
 pub mod significance;
-
+pub mod source;
 pub mod summary;
 
 pub use gallery::Gallery;
 pub use labels::Labels;
 pub use ranking::{Entrant, QueryResult};
+pub use source::{Coverage, evaluate, evaluate_matrices, report_matrices, write};
 
 pub use summary::Summary;
 
@@ -65,6 +66,8 @@ pub struct MethodResult {
 #[derive(Clone, Debug)]
 pub struct Evaluation {
     pub gallery: Gallery,
+    /// How the gallery came about; empty where [`score`] was called directly.
+    pub coverage: Coverage,
     /// In the order they were given.
     pub methods: Vec<MethodResult>,
     /// The expected results of a random ranking.
@@ -90,7 +93,8 @@ pub fn score(gallery: Gallery, entrants: &[Entrant], options: &Options) -> Resul
     let comparisons = significance::compare_all(&gallery, &methods, options);
     let chance = chance::random(&gallery, options.seed);
     let ceiling = chance::ideal(&gallery);
-    Ok(Evaluation { gallery, methods, chance, ceiling, comparisons, options: options.clone() })
+    let coverage = Coverage::default();
+    Ok(Evaluation { gallery, coverage, methods, chance, ceiling, comparisons, options: options.clone() })
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
 /// Units up to which all sign flips are tried: 2^20 sums.
-const EXACT: usize = 20;
+pub const EXACT: usize = 20;
 
 /// How much better ranker `a` is than ranker `b`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

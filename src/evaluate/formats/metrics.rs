@@ -17,6 +17,7 @@ pub fn of(evaluation: &Evaluation) -> Value {
         "chance": summary(&evaluation.chance),
         "ceiling": summary(&evaluation.ceiling),
         "comparisons": evaluation.comparisons,
+        "coverage": evaluation.coverage,
         "options": evaluation.options,
     })
 }
