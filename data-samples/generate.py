@@ -35,11 +35,11 @@ def tasks(per_class):
 
 
 def generate(out, per_class, only):
-    """Writes the models and their tables; `only` limits the run to paths that contain it."""
+    """Writes the models and their tables; `only` limits the run to paths that contain one of its texts."""
     records, failed = [], []
     paths = [f"{category}/{name}.step" for category, _, name, _ in tasks(per_class)]
     for category, index, name, entry in tasks(per_class):
-        if only and only not in f"{category}/{name}":
+        if only and not any(word in f"{category}/{name}" for word in only.split(",")):
             continue
         path = out / category / f"{name}.step"
         try:
@@ -65,7 +65,7 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=HERE)
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--contact", metavar="FILE")
-    parser.add_argument("--only", default="", metavar="TEXT", help="only the models whose path contains TEXT")
+    parser.add_argument("--only", default="", metavar="TEXT", help="only the models whose path contains one of the texts, separated by commas")
     arguments = parser.parse_args()
     if arguments.check:
         sys.exit(check.run(arguments.out, arguments.only))

@@ -2,7 +2,10 @@
 
 import csv
 
-TRUTH = ["path", "label", "nx", "ny", "nz", "offset_mm", "size_mm", "axis_px", "axis_py", "axis_pz", "axis_dx", "axis_dy", "axis_dz", "coverage"]
+TRUTH = [
+    "path", "label", "nx", "ny", "nz", "offset_mm", "size_mm", "axis_px", "axis_py", "axis_pz", "axis_dx", "axis_dy", "axis_dz",
+    "coverage"
+]
 FRAME = ["path"] + [f"e{i}{c}" for i in (1, 2, 3) for c in "xyz"] + ["origin_x", "origin_y", "origin_z"]
 BEGIN, END = "<!-- table: begin (written by generate.py) -->", "<!-- table: end -->"
 
@@ -50,8 +53,9 @@ def readme_row(r):
     notes = [note for key, note in (("splines", "all B-spline"), ("split", "split unevenly")) if r[key]]
     notes += [] if r["seams"] else ["no seams"]
     name = r["path"].split("/")[1].removesuffix(".step").replace("-", " ")
-    return (f"| `{r['path']}` | {name} | {r['schema']} | {r['unit']} | {'; '.join([structure] + notes)} | {symmetry(r)} |"
-            f" {r['faces']} | {r['bytes'] / 1000:.0f} |")
+    return (
+        f"| `{r['path']}` | {name} | generated | {r['schema']} | {r['unit']} | {'; '.join([structure] + notes)} | {symmetry(r)} |"
+        f" {r['faces']} | {r['bytes'] / 1000:.0f} |")
 
 
 def renew_readme(page, records, order):
@@ -60,7 +64,9 @@ def renew_readme(page, records, order):
     table, tail = rest.split(END)
     rows = {line.split("`")[1]: line for line in table.splitlines() if line.startswith("| `")}
     rows.update({r["path"]: readme_row(r) for r in records})
-    lines = ["| file | shape | schema | unit | structure | symmetry | faces | kB |", "|---|---|---|---|---|---|---|---|"]
+    lines = [
+        "| file | shape | origin | schema | unit | structure | symmetry | faces | kB |", "|---|---|---|---|---|---|---|---|---|"
+    ]
     lines += [rows[path] for path in order if path in rows]
     page.write_text("\n".join([head + BEGIN, *lines, END + tail]), encoding="utf-8")
 

@@ -68,7 +68,8 @@ def listed(normal, offset, rows, size):
         elif row["nx"]:
             other = numbers(row, "nx", "ny", "nz")
             sign = np.sign(other @ normal) or 1.0
-            if np.linalg.norm(sign * other - normal) < SAME_ANGLE and abs(sign * float(row["offset_mm"]) - offset) < 2 * SAME_OFFSET * size:
+            if np.linalg.norm(sign * other - normal) < SAME_ANGLE and abs(sign * float(row["offset_mm"]) -
+                                                                          offset) < 2 * SAME_OFFSET * size:
                 return True
     return False
 
@@ -103,7 +104,7 @@ def run(out, only):
         print("labels.csv, truth.csv and frame.csv do not name the same files")
         return 1
     for path, rows in truth.items():
-        if only in path:
+        if any(word in path for word in only.split(",")):
             found = faults(path, write.read(out / path), rows, frames[path][0])
             bad += bool(found)
             print(f"{path:44} {'; '.join(found) or 'ok'}", flush=True)

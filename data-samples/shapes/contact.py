@@ -47,7 +47,7 @@ def draw(out, target, only):
     from PIL import Image, ImageDraw
     with open(out / "frame.csv", encoding="ascii") as file:
         rows = [row for row in csv.reader(file)][1:]
-    rows = [row for row in rows if only in row[0]]
+    rows = [row for row in rows if any(word in row[0] for word in only.split(","))]
     columns = min(11, len(rows))
     sheet = Image.new("L", (columns * SIDE, -(-len(rows) // columns) * (SIDE + 14)), 255)
     pen = ImageDraw.Draw(sheet)

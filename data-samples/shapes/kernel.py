@@ -24,8 +24,8 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-
 # ---- small conversions -------------------------------------------------------------------------------------
+
 
 def pnt(p):
     """A point from a tuple."""
@@ -57,6 +57,7 @@ def solids_of(shape):
 
 
 # ---- placing -----------------------------------------------------------------------------------------------
+
 
 def apply(shape, trsf):
     """A transformed copy of the shape (geometry changed, no location left)."""
@@ -96,6 +97,7 @@ def mirror(shape, normal=(0, 1, 0), at=(0, 0, 0)):
 
 # ---- primitives --------------------------------------------------------------------------------------------
 
+
 def box(size, at=(0, 0, 0)):
     """A box of the given size, centred at a point."""
     corner = [c - s / 2 for c, s in zip(at, size)]
@@ -123,6 +125,7 @@ def ring(at, axis, major, minor):
 
 
 # ---- wires, extrusions, revolutions ------------------------------------------------------------------------
+
 
 def polyline(points, closed=True):
     """A wire of straight edges."""
@@ -212,8 +215,10 @@ def lathe(profile, at=(0, 0, 0), axis="z", angle=360.0):
     first, last = profile[0][0], profile[-1][-1]
     closing = [last, (0.0, last[1]), (0.0, first[1]), first] if first != last else []
     pieces = list(profile) + [[a, b] for a, b in zip(closing, closing[1:]) if math.dist(a, b) > 1e-9]
-    edges = [spline_edge([place(p) for p in piece]) if len(piece) > 2
-             else BRepBuilderAPI_MakeEdge(pnt(place(piece[0])), pnt(place(piece[1]))).Edge() for piece in pieces]
+    edges = [
+        spline_edge([place(p) for p in piece]) if len(piece) > 2 else BRepBuilderAPI_MakeEdge(
+            pnt(place(piece[0])), pnt(place(piece[1]))).Edge() for piece in pieces
+    ]
     spin = gp_Ax1(pnt(at), direction({"z": (0, 0, 1), "x": (1, 0, 0), "y": (0, 1, 0)}[axis]))
     face = face_of(wire_of(*edges))
     made = BRepPrimAPI_MakeRevol(face, spin) if angle >= 360 else BRepPrimAPI_MakeRevol(face, spin, math.radians(angle))
@@ -245,6 +250,7 @@ def sweep(path, profile):
 
 
 # ---- booleans and finishing --------------------------------------------------------------------------------
+
 
 def as_list(shapes):
     """An OCCT list of shapes."""

@@ -15,8 +15,8 @@ from .kernel import loft, mirror, pnt, sewn, spline_edge, wire_of
 
 ROUND = math.sqrt(0.5)  # weight of a corner control point that makes a quarter arc circular
 
-
 # ---- B-spline surfaces -------------------------------------------------------------------------------------
+
 
 def clamped_knots(params, degree):
     """The averaged clamped knot vector for interpolation at the parameters."""
@@ -28,12 +28,14 @@ def clamped_knots(params, degree):
 def basis(knots, degree, count, t):
     """The values at t of all B-spline basis functions."""
     last = max(i for i in range(len(knots) - 1) if knots[i] < knots[i + 1])
-    values = [1.0 if (knots[i] <= t < knots[i + 1]) or (i == last and t == knots[i + 1]) else 0.0
-              for i in range(len(knots) - 1)]
+    values = [
+        1.0 if (knots[i] <= t < knots[i + 1]) or (i == last and t == knots[i + 1]) else 0.0 for i in range(len(knots) - 1)
+    ]
     for d in range(1, degree + 1):
-        values = [(values[i] * (t - knots[i]) / (knots[i + d] - knots[i]) if knots[i + d] > knots[i] else 0.0)
-                  + (values[i + 1] * (knots[i + d + 1] - t) / (knots[i + d + 1] - knots[i + 1])
-                     if knots[i + d + 1] > knots[i + 1] else 0.0) for i in range(len(values) - 1)]
+        values = [(values[i] * (t - knots[i]) / (knots[i + d] - knots[i]) if knots[i + d] > knots[i] else 0.0) +
+                  (values[i + 1] * (knots[i + d + 1] - t) /
+                   (knots[i + d + 1] - knots[i + 1]) if knots[i + d + 1] > knots[i + 1] else 0.0)
+                  for i in range(len(values) - 1)]
     return values[:count]
 
 
@@ -69,13 +71,14 @@ def surface_face(net, weights, udegree, uknots, vdegree, vknots):
             poles.SetValue(i + 1, j + 1, pnt(net[i, j]))
             weight.SetValue(i + 1, j + 1, 1.0 if weights is None else weights[j])
     (u, um), (v, vm) = split_knots(uknots), split_knots(vknots)
-    knots = (array1(occ.Array1_double, u), array1(occ.Array1_double, v),
-             array1(occ.Array1_int, um), array1(occ.Array1_int, vm), udegree, vdegree)
+    knots = (array1(occ.Array1_double, u), array1(occ.Array1_double,
+                                                  v), array1(occ.Array1_int, um), array1(occ.Array1_int, vm), udegree, vdegree)
     surface = Geom_BSplineSurface(poles, *knots) if weights is None else Geom_BSplineSurface(poles, weight, *knots)
     return BRepBuilderAPI_MakeFace(surface, 1e-6).Face()
 
 
 # ---- skins over elliptic sections --------------------------------------------------------------------------
+
 
 def chord_params(points):
     """Chord-length parameters in [0, 1] of a list of points."""
@@ -166,8 +169,7 @@ def limb(points, radii, side=(0, 1, 0), flat=1.0):
 
 # ---- wings -------------------------------------------------------------------------------------------------
 
-AIRFOIL = [(1.0, 0.0), (0.7, 0.42), (0.3, 0.95), (0.08, 0.62), (0.0, 0.0), (0.08, -0.45), (0.3, -0.6), (0.7, -0.22),
-           (1.0, 0.0)]
+AIRFOIL = [(1.0, 0.0), (0.7, 0.42), (0.3, 0.95), (0.08, 0.62), (0.0, 0.0), (0.08, -0.45), (0.3, -0.6), (0.7, -0.22), (1.0, 0.0)]
 
 
 def airfoil(leading, chord, thick, up=(0, 0, 1), twist=0.0):
@@ -196,13 +198,13 @@ def pair(shape):
 
 # ---- hulls -------------------------------------------------------------------------------------------------
 
+
 def hull_skin(stations, params):
     """The faces of a hull without its deck, the control nets of its two halves, their degree and knots along x."""
     halves, nets = [], []
     for sign in (1, -1):
         rows = np.array([[(x, sign * b, deck), (x, sign * b * (0.7 + 0.3 * full), keel + (deck - keel) * (0.55 - 0.5 * full)),
-                          (x, sign * b * (0.25 + 0.65 * full), keel), (x, 0, keel)]
-                         for x, b, deck, keel, full in stations])
+                          (x, sign * b * (0.25 + 0.65 * full), keel), (x, 0, keel)] for x, b, deck, keel, full in stations])
         net, degree, knots = interpolating_rows(rows, params)
         nets.append(net)
         halves.append(surface_face(net, None, degree, knots, 3, [0] * 4 + [1] * 4))
