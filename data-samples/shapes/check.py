@@ -91,7 +91,9 @@ def faults(path, shape, rows, frame):
             if (row["label"] == "exact") != (share >= EXACT) or abs(share - stated) > 5e-3:
                 found.append(f"{row['label']} plane covers {share:.4f}, stated {stated:.4f}")
     for normal, offset in guesses(frame, shape):
-        if not listed(normal, offset, rows, size) and mirrors.coverage(normal, offset) >= EXACT:
+        if listed(normal, offset, rows, size) or mirrors.coverage(normal, offset, 200) < 0.98:
+            continue
+        if mirrors.coverage(normal, offset) >= EXACT:
             found.append(f"unlisted exact plane {np.round(normal, 4)} at {offset:.4f}")
     return found
 

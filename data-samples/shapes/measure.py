@@ -136,10 +136,11 @@ class Mirrors:
         self.owner = np.concatenate([owner, np.arange(len(centres))])
         self.tree = cKDTree(np.concatenate([points, centres]))
 
-    def coverage(self, normal, offset):
-        """The share of the surface whose mirror image lies on the surface within NEAR."""
+    def coverage(self, normal, offset, samples=None):
+        """The share of the surface whose mirror image lies on the surface within NEAR, from all or the first samples."""
+        tests = self.tests[:samples]
         normal = np.asarray(normal, float)
-        image = self.tests - 2 * (self.tests @ normal - offset)[:, None] * normal
+        image = tests - 2 * (tests @ normal - offset)[:, None] * normal
         gap = np.full(len(image), np.inf)
         near, index = self.tree.query(image, k=24, distance_upper_bound=0.05 * self.size)
         for k in range(24):

@@ -1,5 +1,6 @@
 """STEP files: schema, unit and structure chosen per file, bytes that depend on the geometry only."""
 
+import itertools
 import re
 
 from OCP.IFSelect import IFSelect_RetDone
@@ -78,7 +79,10 @@ def settle(path):
     text = re.sub(r"CALENDAR_DATE\([^)]*\)", "CALENDAR_DATE(2026,1,1)", text)
     text = re.sub(r"LOCAL_TIME\(\d+,\d+,[0-9.]+", "LOCAL_TIME(0,0,0.", text)
     text = re.sub(r"COORDINATED_UNIVERSAL_TIME_OFFSET\([^)]*\)", "COORDINATED_UNIVERSAL_TIME_OFFSET(0,0,.AHEAD.)", text)
-    text = re.sub(r"'Open CASCADE STEP translator[^']*'", f"'{path.stem}'", text)
+    text = re.sub(r"#\d+ = [^;]*?(?:'model \d|OCCURRENCE\()[^;]*;", lambda found: re.sub(r"\n\s*", "", found.group()), text)
+    text = re.sub(r"'model \d+((?:\.\d+)*)'", rf"'{path.stem}\1'", text)  # the kernel numbers products in one count
+    count = itertools.count(1)
+    text = re.sub(r"USAGE_OCCURRENCE\('\d+'", lambda _: f"USAGE_OCCURRENCE('{next(count)}'", text)
     path.write_text(text, encoding="ascii", newline="\n")
 
 
