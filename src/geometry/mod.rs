@@ -3,10 +3,14 @@
 //! Lengths are millimetres and angles radians everywhere inside the crate.
 
 pub mod aabb;
+pub mod bvh;
 pub mod frame;
 pub mod isometry;
 pub mod plane;
+pub mod plane_index;
 pub mod polygon;
+pub mod principal;
+pub mod revolution;
 pub mod tolerance;
 pub mod transform;
 
@@ -14,6 +18,8 @@ pub use aabb::Aabb;
 pub use frame::Frame;
 pub use isometry::{Chirality, Isometry};
 pub use plane::Plane;
+pub use plane_index::PlaneIndex;
+pub use revolution::Axis;
 pub use tolerance::Tolerance;
 pub use transform::Transform;
 

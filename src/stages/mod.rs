@@ -11,6 +11,8 @@
 
 pub mod corner_filter;
 pub mod descriptor;
+#[cfg(test)]
+pub mod fixture;
 pub mod isometry;
 pub mod merge;
 pub mod pair_match;

@@ -1,1 +1,0 @@
-//! Stage: corner_filter.

@@ -1,0 +1,142 @@
+//! The loops of a maximal face, without seams and poles, and their corners.
+
+use rustc_hash::FxHashMap;
+
+use super::edges::EdgeShapes;
+use super::{InnerLoop, LocalOutline};
+use crate::brep::{EdgeId, EdgeUse, FaceGeometry, FaceId, Model, Surface, VertexId};
+use crate::geometry::{Axis, Point, Vector};
+
+/// A closed chain of edges around a maximal face.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Boundary {
+    pub corners: Vec<Point>,
+    /// Points along the loop, close enough together for areas and centroids.
+    pub points: Vec<Point>,
+    pub length: f64,
+    /// Whether a piece of it belongs to a loop that the file calls the outer one.
+    pub outer: bool,
+}
+
+impl Boundary {
+    /// Half the sum of p x q, taken about the first point.
+    pub fn vector_area(&self) -> Vector {
+        let Some(origin) = self.points.first() else { return Vector::zeros() };
+        let spokes = self.points.windows(2).map(|w| (w[0] - origin).cross(&(w[1] - origin)));
+        spokes.sum::<Vector>() * 0.5
+    }
+
+    /// Mean of the loop by arc length.
+    fn centroid(&self) -> Point {
+        let mut sum = (Vector::zeros(), 0.0);
+        for (p, q) in self.points.iter().zip(self.points.iter().cycle().skip(1)) {
+            let length = (q - p).norm();
+            sum = (sum.0 + (p.coords + q.coords) * (0.5 * length), sum.1 + length);
+        }
+        if sum.1 > 0.0 { Point::from(sum.0 / sum.1) } else { self.points.first().copied().unwrap_or_default() }
+    }
+}
+
+/// The loops around a group of faces: edges between two faces of the group and seams (used twice by one face) go,
+/// so do edges without length; what is left is chained again.
+pub(super) fn loops(model: &Model, group: &[FaceId], shapes: &EdgeShapes, corner_angle: f64) -> Vec<Boundary> {
+    let mut uses = Vec::new();
+    for face in group {
+        for face_loop in &model.faces[face.index()].loops {
+            uses.extend(face_loop.uses.iter().map(|&u| (u, face_loop.outer)));
+        }
+    }
+    let mut count: FxHashMap<EdgeId, usize> = FxHashMap::default();
+    uses.iter().for_each(|(u, _)| *count.entry(u.edge).or_default() += 1);
+    uses.retain(|(u, _)| count[&u.edge] == 1 && !shapes.is_degenerate(u.edge));
+    let chains = chains(model, &uses);
+    chains.iter().map(|chain| boundary(chain, shapes, corner_angle)).collect()
+}
+
+/// The two ends of an edge use, in the direction of the loop.
+fn ends(model: &Model, edge_use: &EdgeUse) -> (VertexId, VertexId) {
+    let edge = &model.edges[edge_use.edge.index()];
+    if edge_use.forward { (edge.start, edge.end) } else { (edge.end, edge.start) }
+}
+
+/// Chains uses head to tail. A chain that does not close (a broken file) is kept as it is.
+fn chains(model: &Model, uses: &[(EdgeUse, bool)]) -> Vec<Vec<(EdgeUse, bool)>> {
+    let mut from: FxHashMap<VertexId, Vec<usize>> = FxHashMap::default();
+    for (i, (edge_use, _)) in uses.iter().enumerate().rev() {
+        from.entry(ends(model, edge_use).0).or_default().push(i);
+    }
+    let mut used = vec![false; uses.len()];
+    let mut chains = Vec::new();
+    for first in 0..uses.len() {
+        let mut chain = Vec::new();
+        let mut next = (!used[first]).then_some(first);
+        while let Some(i) = next {
+            used[i] = true;
+            chain.push(uses[i]);
+            let leaving = from.get_mut(&ends(model, &uses[i].0).1);
+            next = leaving.and_then(|l| {
+                l.retain(|&j| !used[j]);
+                l.pop()
+            });
+        }
+        if !chain.is_empty() {
+            chains.push(chain);
+        }
+    }
+    chains
+}
+
+fn boundary(chain: &[(EdgeUse, bool)], shapes: &EdgeShapes, corner_angle: f64) -> Boundary {
+    let mut result = Boundary::default();
+    let last = chain[chain.len() - 1].0;
+    let mut incoming = shapes.leaving(&last);
+    for (edge_use, outer) in chain {
+        let points = shapes.points(edge_use);
+        if turn(&incoming, &shapes.entering(edge_use)) > corner_angle {
+            result.corners.extend(points.first());
+        }
+        incoming = shapes.leaving(edge_use);
+        result.points.extend(points);
+        result.length += shapes.length(edge_use.edge);
+        result.outer |= outer;
+    }
+    result
+}
+
+/// Angle between two directions, radians; a cusp turns by pi. Unknown directions (zero) count as a corner.
+fn turn(a: &Vector, b: &Vector) -> f64 {
+    if *a == Vector::zeros() || *b == Vector::zeros() {
+        return std::f64::consts::PI;
+    }
+    a.cross(b).norm().atan2(a.dot(b))
+}
+
+/// The outline of a group from its loops.
+pub(super) fn outline(
+    model: &Model,
+    group: Vec<FaceId>,
+    mut loops: Vec<Boundary>,
+    axis: Option<Axis>,
+    oriented: bool,
+) -> LocalOutline {
+    let vector_area = loops.iter().map(Boundary::vector_area).sum();
+    let outer = outer_loop(model, &group, &loops).map(|i| loops.swap_remove(i)).unwrap_or_default();
+    let inner = loops.iter().map(|l| InnerLoop { centroid: l.centroid(), length: l.length }).collect();
+    LocalOutline { corners: outer.corners, perimeter: outer.length, faces: group, inner, vector_area, axis, oriented }
+}
+
+/// Position of the outer loop: the one the file names where it names one, else the one that encloses most.
+fn outer_loop(model: &Model, group: &[FaceId], loops: &[Boundary]) -> Option<usize> {
+    let mut named = (0..loops.len()).filter(|&i| loops[i].outer);
+    if let (Some(only), None) = (named.next(), named.next()) {
+        return Some(only);
+    }
+    let plane = group.iter().all(|f| is_plane(model, *f));
+    let extent = |l: &Boundary| if plane { l.vector_area().norm() } else { l.length };
+    (0..loops.len()).max_by(|&i, &j| extent(&loops[i]).total_cmp(&extent(&loops[j])).then(j.cmp(&i)))
+}
+
+fn is_plane(model: &Model, face: FaceId) -> bool {
+    let FaceGeometry::Trimmed { surface, .. } = &model.faces[face.index()].geometry else { return false };
+    matches!(**surface, Surface::Plane(_))
+}

@@ -1,0 +1,176 @@
+//! Stage 4: pairs of faces -> the isometries that map one to the other, and the mirror planes among them.
+//!
+//! In: [`Matches`]. Out: [`Candidates`]: mirror planes with their residual, and how many faces repeat.
+//!
+//! Method: section IV.C. Mirrors are fitted directly as a plane (`mirror`), which is exact and needs no case for
+//! coplanar corners; direct isometries by Umeyama (1991). Beside the pairs, faces without corners vote by the bisector
+//! planes of their centroids and by their axes (`axes`), and single faces by their own symmetries.
+//!
+//! Cost: linear in the pairs and their corners. It does not promise that the surfaces between the corners agree.
+
+mod axes;
+pub mod mirror;
+
+use crate::cancel::Cancel;
+use crate::geometry::{Chirality, Isometry, Plane};
+use crate::stages::corner_filter::Outline;
+use crate::stages::pair_match::{Correspondence, FacePair, Matches, Order};
+use crate::stages::parse::Parsed;
+use crate::stages::{ModelError, Stage};
+
+/// Settings of the stage.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Largest root mean square distance of corners from their images, as a share of D; above the precision of files
+    /// and below any difference that is meant.
+    pub residual: f64,
+    /// Smallest distance of the two lowest eigenvalues of the plane fit, as a share of its largest: below it several
+    /// planes fit and the pair says nothing.
+    pub eigen_gap: f64,
+    /// Fit mirrors by Umeyama and accept every isometry whose eigenvalue 1 is double, glides too, as the paper does.
+    pub umeyama: bool,
+    /// Take candidates from faces without corners: bisectors of congruent ones, and axes.
+    pub cornerless: bool,
+    /// Take candidates from single faces that are their own mirror images.
+    pub single_faces: bool,
+    /// Axes of revolution (the largest by area) whose common planes are tried.
+    pub axes: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { residual: 1e-3, eigen_gap: 1e-3, umeyama: false, cornerless: true, single_faces: true, axes: 12 }
+    }
+}
+
+impl Options {
+    /// The paper's reading.
+    pub fn paper() -> Self {
+        Self { umeyama: true, cornerless: false, single_faces: false, axes: 0, ..Self::default() }
+    }
+}
+
+/// Where a candidate plane comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Source {
+    /// Corners of two faces.
+    Corners,
+    /// Corners of one face.
+    SingleFace,
+    /// Centroids of two congruent faces without corners.
+    Bisector,
+    /// Axes of faces of revolution.
+    Axes,
+    /// Principal axes of the surface or its normals, polished.
+    Principal,
+}
+
+/// A plane in which the model may be symmetric.
+#[derive(Clone, Copy, Debug)]
+pub struct Candidate {
+    pub plane: Plane,
+    /// Root mean square distance of the mirrored corners from their images, mm.
+    pub residual: f64,
+    /// Area of the faces that speak for it, times the pairs that this one stands for, mm^2.
+    pub weight: f64,
+    pub source: Source,
+    /// Position of the pair in [`Matches::pairs`].
+    pub pair: Option<u32>,
+}
+
+/// Faces that direct isometries map onto others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Repeats {
+    /// Faces that are the image of another one.
+    pub faces: usize,
+    /// Their share of all (maximal) faces.
+    pub ratio: f64,
+}
+
+/// What the pairs say.
+#[derive(Clone, Debug, Default)]
+pub struct Candidates {
+    pub mirrors: Vec<Candidate>,
+    pub repeats: Repeats,
+}
+
+/// Fits isometries to the matched pairs.
+///
+/// # Errors
+/// Only when cancelled.
+pub fn isometry(
+    parsed: &Parsed,
+    outlines: &[Outline],
+    matches: &Matches,
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Candidates, ModelError> {
+    let size = parsed.measures.tolerance.size();
+    let mut mirrors = Vec::new();
+    let mut repeated = vec![false; outlines.len()];
+    for (i, pair) in matches.pairs.iter().enumerate() {
+        if i % 1024 == 0 {
+            cancel.check().map_err(|c| ModelError::cancelled(Stage::Isometry, c))?;
+        }
+        mirrors.extend(mirror_of(outlines, pair, i as u32, size, options));
+        let [a, b] = pair.faces.map(|f| f as usize);
+        if !(repeated[a] && repeated[b]) && repeats(outlines, pair, size, options) {
+            (repeated[a], repeated[b]) = (true, true);
+        }
+    }
+    if options.axes > 0 {
+        mirrors.extend(axes::planes(&parsed.measures, outlines, options.axes));
+    }
+    let faces = repeated.iter().filter(|&&r| r).count();
+    let repeats = Repeats { faces, ratio: faces as f64 / outlines.len().max(1) as f64 };
+    Ok(Candidates { mirrors, repeats })
+}
+
+/// The mirror plane of a pair, if its corners have one.
+fn mirror_of(outlines: &[Outline], pair: &FacePair, index: u32, size: f64, options: &Options) -> Option<Candidate> {
+    let [a, b] = pair.faces.map(|i| &outlines[i as usize]);
+    let single = pair.faces[0] == pair.faces[1];
+    if single && !options.single_faces {
+        return None;
+    }
+    let area = if single { a.area } else { a.area + b.area };
+    let candidate = |plane: Plane, residual: f64, source: Source| Candidate {
+        plane,
+        residual,
+        weight: area * pair.weight,
+        source,
+        pair: Some(index),
+    };
+    if pair.correspondence == Correspondence::Centroids {
+        let plane = if options.cornerless { axes::bisector(a, b, size)? } else { return None };
+        return Some(candidate(plane, 0.0, Source::Bisector));
+    }
+    if pair.order() == Some(Order::Same) && a.oriented && b.oriented && !options.umeyama {
+        return None;
+    }
+    let (from, to) = pair.corners(outlines);
+    let (plane, squared) = if options.umeyama {
+        let (isometry, squared) = Isometry::fit(&from, &to, Chirality::Improper)?;
+        (mirror::plane_of(&isometry, options.residual)?, squared)
+    } else {
+        let fit = mirror::fit(&from, &to)?;
+        (fit.gap >= options.eigen_gap).then_some((fit.plane, fit.squared))?
+    };
+    let source = if single { Source::SingleFace } else { Source::Corners };
+    let residual = squared.max(0.0).sqrt();
+    (residual <= options.residual * size).then(|| candidate(plane, residual, source))
+}
+
+/// Whether a direct isometry maps the first face of the pair to the second.
+fn repeats(outlines: &[Outline], pair: &FacePair, size: f64, options: &Options) -> bool {
+    if pair.faces[0] == pair.faces[1] || pair.order() == Some(Order::Reversed) {
+        return false;
+    }
+    if pair.correspondence == Correspondence::Centroids {
+        return true;
+    }
+    let (from, to) = pair.corners(outlines);
+    let fitted = Isometry::fit(&from, &to, Chirality::Proper);
+    fitted.is_some_and(|(_, squared)| squared.max(0.0).sqrt() <= options.residual * size)
+}

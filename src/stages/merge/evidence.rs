@@ -1,0 +1,116 @@
+//! The faces that a plane maps onto each other, by inverse look-up.
+
+use rustc_hash::FxHashMap;
+
+use super::{Merger, SymmetryPlane};
+use crate::brep::PlacedFaceId;
+use crate::cancel::Cancelled;
+use crate::geometry::{Plane, Point};
+use crate::stages::validate;
+use crate::stages::validate::faces::FaceSamples;
+
+/// A mirrored centroid finds its image within this share of D.
+const NEAR: f64 = 0.003;
+/// Samples of a face that must lie on its image: the centroids and areas agree already.
+const SAMPLES: usize = 12;
+
+/// Adds pairs and self-symmetric faces to the planes, as far as the bound on planes times faces allows.
+pub(super) fn add(merger: &Merger, planes: &mut [SymmetryPlane]) -> Result<(), Cancelled> {
+    let count = (merger.options.evidence / merger.outlines.len().max(1)).max(1);
+    let options = validate::Options { face_samples: SAMPLES, ..validate::Options::default() };
+    let mut samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, &options, SAMPLES);
+    let grid = Grid::of(merger);
+    for plane in planes.iter_mut().take(count) {
+        merger.cancel.check()?;
+        let faces = images(merger, &plane.plane, &grid, &mut samples);
+        (plane.pairs, plane.selfs) = step_faces(merger, &plane.plane, &faces);
+    }
+    Ok(())
+}
+
+/// Outlines by where their centroids are.
+struct Grid {
+    cells: FxHashMap<[i64; 3], Vec<u32>>,
+    width: f64,
+}
+
+impl Grid {
+    fn of(merger: &Merger) -> Self {
+        let width = 4.0 * merger.parsed.measures.tolerance.length(NEAR);
+        let mut grid = Self { cells: FxHashMap::default(), width };
+        for (i, outline) in merger.outlines.iter().enumerate() {
+            let cell = grid.cell(&outline.centroid, 0.0);
+            grid.cells.entry(cell).or_default().push(i as u32);
+        }
+        grid
+    }
+
+    fn cell(&self, p: &Point, shift: f64) -> [i64; 3] {
+        std::array::from_fn(|i| ((p[i] + shift) / self.width).floor() as i64)
+    }
+
+    /// Outlines in the cells around `p`, in the order of their numbers.
+    fn around(&self, p: &Point, radius: f64) -> Vec<u32> {
+        let (low, high) = (self.cell(p, -radius), self.cell(p, radius));
+        let mut found = Vec::new();
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    found.extend(self.cells.get(&[x, y, z]).into_iter().flatten());
+                }
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+}
+
+/// Pairs (a, b), a <= b, of outlines that are each other's image.
+fn images(merger: &Merger, plane: &Plane, grid: &Grid, samples: &mut FaceSamples) -> Vec<(u32, u32)> {
+    let radius = merger.parsed.measures.tolerance.length(NEAR);
+    let mut taken = vec![false; merger.outlines.len()];
+    let mut pairs = Vec::new();
+    for a in 0..merger.outlines.len() as u32 {
+        if taken[a as usize] {
+            continue;
+        }
+        let image = plane.reflect(&merger.outlines[a as usize].centroid);
+        let mut near: Vec<_> =
+            grid.around(&image, radius).into_iter().filter(|&b| b >= a && !taken[b as usize]).collect();
+        let distance = |b: u32| (merger.outlines[b as usize].centroid - image).norm();
+        near.retain(|&b| distance(b) <= radius);
+        near.sort_by(|&b, &c| distance(b).total_cmp(&distance(c)).then(b.cmp(&c)));
+        let field = &merger.validated.field;
+        if let Some(b) = near.into_iter().find(|&b| samples.maps_onto(a, b, plane, field)) {
+            (taken[a as usize], taken[b as usize]) = (true, true);
+            pairs.push((a, b));
+        }
+    }
+    pairs
+}
+
+/// Pairs of faces, and faces that are their own image.
+type StepFaces = (Vec<(PlacedFaceId, PlacedFaceId)>, Vec<PlacedFaceId>);
+
+/// The faces of the file behind pairs of maximal faces: each face goes with the one nearest to its image.
+fn step_faces(merger: &Merger, plane: &Plane, outlines: &[(u32, u32)]) -> StepFaces {
+    let centroid = |f: PlacedFaceId| merger.parsed.mesh.faces[f.index()].centroid;
+    let (mut pairs, mut selfs) = (Vec::new(), Vec::new());
+    for &(a, b) in outlines {
+        let [a, b] = [a, b].map(|i| &merger.outlines[i as usize].faces);
+        for &face in a {
+            let image = plane.reflect(&centroid(face));
+            let distance = |f: &PlacedFaceId| (centroid(*f) - image).norm();
+            let Some(&other) = b.iter().min_by(|f, g| distance(f).total_cmp(&distance(g))) else { continue };
+            if face == other {
+                selfs.push(face);
+            } else {
+                pairs.push((face.min(other), face.max(other)));
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    selfs.sort_unstable();
+    (pairs, selfs)
+}

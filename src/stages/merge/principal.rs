@@ -1,0 +1,134 @@
+//! Planes across the principal axes of the surface and of its normals, polished on the surface.
+
+use super::{Merger, SymmetryPlane};
+use crate::cancel::Cancelled;
+use crate::geometry::principal::symmetric_eigen;
+use crate::geometry::{Matrix, Plane, Vector, any_perpendicular};
+use crate::stages::isometry::Source;
+use crate::stages::validate::support::{Round, SurfaceField};
+
+/// Eigenvalues closer than this (as a share of the largest) leave their vectors open: those depend on the pose.
+const DISTINCT: f64 = 1e-3;
+/// A plane this near (radians, share of D) to one already known is not polished: exact planes only get worse.
+const KNOWN: (f64, f64) = (0.035, 0.01);
+/// Radii of the rounds of polishing, as shares of D: wide first, to be caught, then tight.
+const RADII: [f64; 8] = [0.04, 0.04, 0.03, 0.02, 0.015, 0.01, 0.006, 0.004];
+
+/// Planes across the axes that no plane of the pool is near to already.
+pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<SymmetryPlane>, Cancelled> {
+    let (field, size) = (&merger.validated.field, merger.parsed.measures.tolerance.size());
+    let best = pool.iter().map(|p| p.coverage).fold(0.0, f64::max);
+    let mut found: Vec<SymmetryPlane> = Vec::new();
+    for normal in axes(merger, field) {
+        merger.cancel.check()?;
+        let plane = Plane::through(&merger.parsed.measures.centroid, &normal);
+        let known = |p: &&SymmetryPlane| p.coverage >= best - 0.1 && near(&p.plane, &plane, merger);
+        if pool.iter().chain(&found).any(|p| known(&p)) {
+            continue;
+        }
+        let Some((plane, residual)) = polish(field, plane, merger, size) else { continue };
+        if let Some(coverage) = field.reaches(&plane.reflection(), (best - 0.15).max(0.05)) {
+            found.push(candidate(plane, coverage, residual));
+        }
+    }
+    Ok(found)
+}
+
+/// A plane that faces do not speak for.
+pub(super) fn candidate(plane: Plane, coverage: f64, residual: f64) -> SymmetryPlane {
+    let source = Source::Principal;
+    SymmetryPlane { plane, coverage, residual, pairs: Vec::new(), selfs: Vec::new(), source, correlation: None }
+}
+
+fn near(a: &Plane, b: &Plane, merger: &Merger) -> bool {
+    let centroid = &merger.parsed.measures.centroid;
+    let offsets = a.signed_distance(centroid).abs() - b.signed_distance(centroid).abs();
+    a.angle_to(b) <= KNOWN.0 && offsets.abs() <= merger.parsed.measures.tolerance.length(KNOWN.1)
+}
+
+/// The principal axes that the surface determines: of its points, then of its normals.
+fn axes(merger: &Merger, field: &SurfaceField) -> Vec<Vector> {
+    let centroid = merger.parsed.measures.centroid;
+    let (mut points, mut normals) = (Matrix::zeros(), Matrix::zeros());
+    for sample in field.samples(Round::Full) {
+        let d = sample.point - centroid;
+        points += d * d.transpose();
+        normals += sample.normal * sample.normal.transpose();
+    }
+    [points, normals].iter().flat_map(distinct_axes).collect()
+}
+
+/// Eigenvectors whose eigenvalues stand alone.
+fn distinct_axes(matrix: &Matrix) -> Vec<Vector> {
+    let (values, vectors) = symmetric_eigen(matrix);
+    let apart = |i: usize, j: usize| (values[i] - values[j]).abs() > DISTINCT * values[2].abs();
+    let alone = |i: usize| (0..3).all(|j| i == j || apart(i, j));
+    (0..3).filter(|&i| alone(i)).map(|i| vectors[i]).collect()
+}
+
+/// Point-to-surface ICP of the mirrored samples over the plane's three degrees of freedom. Returns the plane and the
+/// root mean square distance; `None` where too little of the surface is met.
+pub(super) fn polish(field: &SurfaceField, start: Plane, merger: &Merger, size: f64) -> Option<(Plane, f64)> {
+    let mut plane = start;
+    let mut residual = 0.0;
+    for (i, radius) in RADII.iter().enumerate() {
+        let round = if i + 3 < RADII.len() { Round::Coarse } else { Round::Middle };
+        let step = Step::of(field, &plane, merger, round, radius * size);
+        // Less than a tenth of the surface cannot become a symmetry of the model.
+        if step.met * 10 < field.samples(round).len() {
+            return None;
+        }
+        residual = (step.squared / step.met as f64).sqrt();
+        plane = step.solved(&plane, size, merger)?;
+    }
+    Some((plane, residual))
+}
+
+/// The normal equations of one Gauss-Newton step.
+struct Step {
+    basis: [Vector; 2],
+    matrix: Matrix,
+    right: Vector,
+    squared: f64,
+    met: usize,
+}
+
+impl Step {
+    fn of(field: &SurfaceField, plane: &Plane, merger: &Merger, round: Round, radius: f64) -> Self {
+        let first = any_perpendicular(&plane.normal);
+        let basis = [first, plane.normal.cross(&first)];
+        let centroid = merger.parsed.measures.centroid;
+        let size = merger.parsed.measures.tolerance.size();
+        let mut step = Self { basis, matrix: Matrix::zeros(), right: Vector::zeros(), squared: 0.0, met: 0 };
+        for sample in field.samples(round) {
+            let image = plane.reflect(&sample.point);
+            let normal = plane.reflect_vector(&sample.normal);
+            let accept = |t: &crate::geometry::bvh::Triangle| field.agree(&t.normal, &normal);
+            let Some(hit) = field.tree().nearest_within(&image, radius, accept) else { continue };
+            let error = hit.normal.dot(&(image - hit.point));
+            // How the error changes as the normal tilts along the basis and the offset grows.
+            let height = plane.signed_distance(&sample.point);
+            let facing = hit.normal.dot(&plane.normal);
+            let arm = sample.point - centroid;
+            let tilt = |e: &Vector| -2.0 * (arm.dot(e) * facing + height * hit.normal.dot(e));
+            let slope = Vector::new(tilt(&basis[0]) / size, tilt(&basis[1]) / size, 2.0 * facing);
+            step.matrix += slope * slope.transpose();
+            step.right -= slope * (error / size);
+            step.squared += error * error;
+            step.met += 1;
+        }
+        step
+    }
+
+    /// The plane after the step; directions in which nothing is determined stay as they are.
+    fn solved(&self, plane: &Plane, size: f64, merger: &Merger) -> Option<Plane> {
+        let inverse = self.matrix.pseudo_inverse(1e-6 * self.matrix.norm()).ok()?;
+        let change = inverse * self.right;
+        let centroid = merger.parsed.measures.centroid;
+        let tilt = self.basis[0] * change.x + self.basis[1] * change.y;
+        let normal = (plane.normal + tilt).try_normalize(0.0)?;
+        let offset = -plane.signed_distance(&centroid) + change.z * size;
+        let moved = Plane { normal, offset: normal.dot(&centroid.coords) + offset };
+        (moved.offset.is_finite() && tilt.norm() < 0.5).then_some(moved)
+    }
+}

@@ -1,0 +1,107 @@
+//! The order of planes: by support, and where that ties, by what no pose changes.
+
+use super::{Merger, SymmetryPlane, silhouette};
+use crate::geometry::Vector;
+use crate::stages::isometry::Source;
+use crate::stages::validate::support::Round;
+
+/// Tied planes whose silhouettes are drawn, those with the smallest mean shadow.
+const DRAWN: usize = 16;
+/// Silhouettes closer than this (relative) are equal: a few rows of pixels.
+const EQUAL_AREA: f64 = 0.02;
+
+/// Sorts the measured planes, best first, and drops those that only the principal axes suggest unless they are as
+/// good as the best: their place below it is an accident of the starting direction.
+pub(super) fn ordered(merger: &Merger, mut pool: Vec<SymmetryPlane>) -> Vec<SymmetryPlane> {
+    pool.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
+    let best = pool.first().map_or(0.0, |p| p.coverage);
+    let tied = |p: &SymmetryPlane| p.coverage >= best - merger.options.tie;
+    pool.retain(|p| tied(p) || !matches!(p.source, Source::Principal | Source::Axes));
+    let rest = pool.split_off(pool.partition_point(tied));
+    let mut ordered = settled(merger, pool);
+    ordered.extend(rest);
+    ordered
+}
+
+/// Orders planes of equal support.
+fn settled(merger: &Merger, tied: Vec<SymmetryPlane>) -> Vec<SymmetryPlane> {
+    if tied.len() < 2 {
+        return tied;
+    }
+    let mut keyed: Vec<_> = tied.into_iter().map(|p| (Key::of(merger, &p), p)).collect();
+    keyed.sort_by(|a, b| a.0.shadow.total_cmp(&b.0.shadow));
+    let measures = &merger.parsed.measures;
+    let size = measures.tolerance.size();
+    for (key, plane) in keyed.iter_mut().take(DRAWN) {
+        key.silhouette = silhouette::area(&merger.parsed.mesh, &plane.plane, &measures.centroid, size);
+    }
+    let mut ordered = Vec::new();
+    while !keyed.is_empty() {
+        let first = first_of(&keyed);
+        ordered.push(keyed.remove(first).1);
+    }
+    ordered
+}
+
+/// What settles a tie, in this order.
+struct Key {
+    /// Area of the shadow along the normal, mm^2; infinite where not drawn.
+    silhouette: f64,
+    /// In steps of 1e-5 D.
+    residual: i64,
+    /// From the centroid, in steps of 1e-4 D.
+    distance: i64,
+    /// Mean |cosine| of the surface normals with the plane's: half the shadow of a convex body.
+    shadow: f64,
+    /// Mean squared distance of the surface from the plane, a share of D^2.
+    moment: f64,
+}
+
+impl Key {
+    fn of(merger: &Merger, plane: &SymmetryPlane) -> Self {
+        let measures = &merger.parsed.measures;
+        let size = measures.tolerance.size();
+        let samples = merger.validated.field.samples(Round::Full);
+        let mean = |f: &dyn Fn(&crate::brep::sample::Sample) -> f64| {
+            samples.iter().map(f).sum::<f64>() / samples.len().max(1) as f64
+        };
+        let normal: Vector = plane.plane.normal;
+        let steps = |x: f64, step: f64| (x / (step * size)).round() as i64;
+        Self {
+            silhouette: f64::INFINITY,
+            residual: steps(plane.residual, 1e-5),
+            distance: steps(plane.plane.signed_distance(&measures.centroid).abs(), 1e-4),
+            shadow: mean(&|s| s.normal.dot(&normal).abs()),
+            moment: mean(&|s| (plane.plane.signed_distance(&s.point) / size).powi(2)),
+        }
+    }
+}
+
+/// Position of the plane that comes first: the smallest silhouette, and of equal ones the next criterion.
+fn first_of(keyed: &[(Key, SymmetryPlane)]) -> usize {
+    let smallest = keyed.iter().map(|(k, _)| k.silhouette).fold(f64::INFINITY, f64::min);
+    let equal = |k: &Key| k.silhouette <= smallest * (1.0 + EQUAL_AREA);
+    let mut best: Option<usize> = None;
+    for i in (0..keyed.len()).filter(|&i| equal(&keyed[i].0)) {
+        if best.is_none_or(|b| before(&keyed[i], &keyed[b])) {
+            best = Some(i);
+        }
+    }
+    best.unwrap_or(0)
+}
+
+/// Whether `a` comes before `b` although their silhouettes are equal.
+fn before((a, p): &(Key, SymmetryPlane), (b, q): &(Key, SymmetryPlane)) -> bool {
+    let coarse = |k: &Key| (k.residual, k.distance);
+    if coarse(a) != coarse(b) {
+        return coarse(a) < coarse(b);
+    }
+    for (x, y) in [(a.shadow, b.shadow), (a.moment, b.moment)] {
+        if (x - y).abs() > 1e-3 {
+            return x < y;
+        }
+    }
+    // Nothing tells them apart but the coordinates: images of each other under a symmetry of the model.
+    let (n, m) = (p.plane.canonical().normal, q.plane.canonical().normal);
+    n.iter().zip(m.iter()).map(|(x, y)| y.total_cmp(x)).find(|o| o.is_ne()).is_some_and(|o| o.is_lt())
+}

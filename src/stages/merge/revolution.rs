@@ -1,0 +1,107 @@
+//! Bodies of revolution: their axis, and which of their infinitely many planes are reported.
+
+use super::principal::{candidate, polish};
+use super::{Merger, SymmetryPlane};
+use crate::cancel::Cancelled;
+use crate::geometry::revolution::fit_axis;
+use crate::geometry::{Axis, Chirality, Isometry, Plane, Vector, any_perpendicular};
+use crate::stages::isometry::Source;
+use crate::stages::validate::support::Round;
+
+/// Turns under which a body of revolution stays as it is, radians: no part of a full turn that gears use.
+const TURNS: [f64; 3] = [0.7, 1.9, 3.7];
+/// An axis of a face is the fitted one within this sine and share of D.
+const SNAP: (f64, f64) = (0.03, 0.02);
+
+/// The axis of a body of revolution, if the model is one.
+pub(super) fn axes(merger: &Merger) -> Result<Vec<Axis>, Cancelled> {
+    let (measures, field) = (&merger.parsed.measures, &merger.validated.field);
+    let elements = field.samples(Round::Middle).iter().map(|s| (s.point, s.normal, 1.0));
+    let Some((fitted, error)) = fit_axis(elements, measures.tolerance.size()) else { return Ok(Vec::new()) };
+    if error > 0.05 {
+        return Ok(Vec::new());
+    }
+    for axis in [of_faces(merger, &fitted), polished(merger, &fitted)].into_iter().flatten() {
+        if turns(merger, &axis)? {
+            return Ok(vec![axis]);
+        }
+    }
+    Ok(Vec::new())
+}
+
+/// The exact axis of the largest face of revolution near the fitted one.
+fn of_faces(merger: &Merger, fitted: &Axis) -> Option<Axis> {
+    let size = merger.parsed.measures.tolerance.size();
+    let near = |axis: &Axis| {
+        let (sine, distance) = fitted.difference(axis);
+        sine <= SNAP.0 && distance <= SNAP.1 * size
+    };
+    let faces = merger.outlines.iter().filter_map(|o| Some((o, o.axis?))).filter(|(_, axis)| near(axis));
+    let (_, axis) = faces.max_by(|(a, _), (b, _)| a.area.total_cmp(&b.area))?;
+    // The foot of the centroid is a point that moves with the model.
+    Some(Axis { point: axis.project(&merger.parsed.measures.centroid), ..axis })
+}
+
+/// The fitted axis, made better as the line in which two polished planes through it meet.
+fn polished(merger: &Merger, fitted: &Axis) -> Option<Axis> {
+    let size = merger.parsed.measures.tolerance.size();
+    let first = any_perpendicular(&fitted.direction);
+    let plane = |n: &Vector| polish(&merger.validated.field, Plane::through(&fitted.point, n), merger, size);
+    let (p, q) = (plane(&first)?.0, plane(&fitted.direction.cross(&first))?.0);
+    let direction = p.normal.cross(&q.normal).try_normalize(0.1)?;
+    let centroid = merger.parsed.measures.centroid;
+    let point = centroid - p.normal * p.signed_distance(&centroid);
+    // The planes stand nearly at right angles: two rounds of projection settle the point.
+    let point = (0..8).fold(point, |x, _| q.project(&p.project(&x)));
+    Some(Axis { point, direction })
+}
+
+/// Whether turning about the axis maps the surface onto itself.
+fn turns(merger: &Merger, axis: &Axis) -> Result<bool, Cancelled> {
+    let (field, needed) = (&merger.validated.field, merger.options.revolution);
+    for angle in TURNS {
+        let turn = rotation(axis, angle);
+        if field.reaches(&turn, needed - 0.02).is_none() || field.support(&turn, Round::Middle, merger.cancel)? < needed
+        {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+fn rotation(axis: &Axis, angle: f64) -> Isometry {
+    let unit = nalgebra::Unit::new_normalize(axis.direction);
+    let rotation = *nalgebra::Rotation3::from_axis_angle(&unit, angle).matrix();
+    Isometry { rotation, translation: axis.point.coords - rotation * axis.point.coords, chirality: Chirality::Proper }
+}
+
+/// For a body of revolution: of the planes through the axis keeps one, and adds the plane across in the middle.
+pub(super) fn restrict(merger: &Merger, axes: &[Axis], pool: &mut Vec<SymmetryPlane>) -> Result<(), Cancelled> {
+    let Some(axis) = axes.first() else { return Ok(()) };
+    pool.clear();
+    let centroid = merger.parsed.measures.centroid;
+    let through = Plane::through(&axis.point, &direction_across(merger, axis));
+    let across = Plane::through(&centroid, &axis.direction);
+    for plane in [through, across] {
+        if let Some(coverage) = merger.validated.field.reaches(&plane.reflection(), merger.options.partial) {
+            pool.push(SymmetryPlane { source: Source::Axes, ..candidate(plane, coverage, 0.0) });
+        }
+    }
+    Ok(())
+}
+
+/// A direction at right angles to the axis: the one along which the surface spreads most. Where it spreads equally,
+/// any will do, for the body cannot tell them apart.
+fn direction_across(merger: &Merger, axis: &Axis) -> Vector {
+    let first = any_perpendicular(&axis.direction);
+    let second = axis.direction.cross(&first);
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for sample in merger.validated.field.samples(Round::Full) {
+        let d = sample.point - axis.point;
+        let (x, y) = (d.dot(&first), d.dot(&second));
+        cosine += x * x - y * y;
+        sine += 2.0 * x * y;
+    }
+    let angle = 0.5 * f64::atan2(sine, cosine);
+    first * angle.cos() + second * angle.sin()
+}

@@ -1,1 +1,0 @@
-//! Stage: pair_match.

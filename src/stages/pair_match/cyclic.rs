@@ -1,0 +1,162 @@
+//! Eq. (3): cyclic matching of corner distances.
+
+use super::{Correspondence, Options, Order};
+use crate::geometry::Point;
+
+/// The position on the second loop (of `n` corners) of corner `k` of the first.
+pub(super) fn position(k: usize, offset: usize, order: Order, n: usize) -> usize {
+    match order {
+        Order::Same => (offset + k) % n,
+        Order::Reversed => (offset + n - k % n) % n,
+    }
+}
+
+/// Distances between consecutive points of the closed loop.
+fn sides(corners: &[Point]) -> Vec<f64> {
+    let next = corners.iter().cycle().skip(1);
+    corners.iter().zip(next).map(|(p, q)| (q - p).norm()).collect()
+}
+
+/// Shows `keep` every correspondence in the given order whose sum is at most `limit` (mm) for each corner.
+pub(super) fn matches(
+    a: &[Point],
+    b: &[Point],
+    order: Order,
+    limit: f64,
+    options: &Options,
+    keep: &mut impl FnMut(Correspondence),
+) {
+    let (p, q) = (sides(a), sides(b));
+    if p.len() == q.len() {
+        let total = limit * p.len() as f64;
+        for offset in 0..q.len() {
+            if difference(&p, &q, offset, order, total, options.absolute) <= total {
+                keep(Correspondence::Cyclic { offset: offset as u32, order });
+            }
+        }
+    } else if p.len().abs_diff(q.len()) <= options.extra_corners {
+        subsequences(a, b, order, limit, keep);
+    }
+}
+
+/// The sum of eq. (3), given up once it passes `limit`.
+fn difference(p: &[f64], q: &[f64], offset: usize, order: Order, limit: f64, absolute: bool) -> f64 {
+    let n = p.len();
+    // Side k runs from corner k to k + 1; reversed, it is met from its other end.
+    let first = if order == Order::Same { offset } else { offset + n - 1 };
+    let mut sum = 0.0;
+    for (k, side) in p.iter().enumerate() {
+        let other = q[position(k, first % n, order, n)];
+        sum += if absolute { (side - other).abs() } else { side - other };
+        if absolute && sum > limit {
+            break;
+        }
+    }
+    sum.abs()
+}
+
+/// Correspondences of all corners of the shorter loop with a cyclic subsequence of the longer one.
+///
+/// From each start a dynamic program over (corners matched, corners left out) keeps the smallest sum.
+fn subsequences(a: &[Point], b: &[Point], order: Order, limit: f64, keep: &mut impl FnMut(Correspondence)) {
+    let swapped = a.len() > b.len();
+    let (short, long) = if swapped { (b, a) } else { (a, b) };
+    let total = limit * short.len() as f64;
+    for offset in 0..long.len() {
+        if let Some(chain) = subsequence(short, long, offset, order, total) {
+            let pair = |(i, j): (usize, usize)| if swapped { (j as u32, i as u32) } else { (i as u32, j as u32) };
+            keep(Correspondence::Listed { corners: chain.into_iter().enumerate().map(pair).collect(), order });
+        }
+    }
+}
+
+/// The best subsequence of `long` that starts at `offset`, as positions; `None` if its sum is above `total`.
+fn subsequence(short: &[Point], long: &[Point], offset: usize, order: Order, total: f64) -> Option<Vec<usize>> {
+    let (n, spare) = (short.len(), long.len() - short.len());
+    let at = |k: usize| &long[position(k, offset, order, long.len())];
+    // sums[k][s]: corner k of the short loop lies on step k + s of the long one; with the step before it.
+    let mut sums = vec![vec![(f64::INFINITY, 0); spare + 1]; n];
+    sums[0][0] = (0.0, 0);
+    for k in 1..n {
+        let side = (short[k] - short[k - 1]).norm();
+        for s in 0..=spare {
+            for before in 0..=s {
+                let cost = (side - (at(k + s) - at(k - 1 + before)).norm()).abs() + sums[k - 1][before].0;
+                if cost < sums[k][s].0 {
+                    sums[k][s] = (cost, before);
+                }
+            }
+        }
+    }
+    let closing = (short[0] - short[n - 1]).norm();
+    let closed = |s: usize| sums[n - 1][s].0 + (closing - (at(0) - at(n - 1 + s)).norm()).abs();
+    let mut s = (0..=spare).min_by(|&s, &t| closed(s).total_cmp(&closed(t)))?;
+    if closed(s) > total {
+        return None;
+    }
+    let mut chain = vec![0; n];
+    for k in (0..n).rev() {
+        chain[k] = position(k + s, offset, order, long.len());
+        s = sums[k][s].1;
+    }
+    Some(chain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(list: &[[f64; 2]]) -> Vec<Point> {
+        list.iter().map(|&[x, y]| Point::new(x, y, 0.0)).collect()
+    }
+
+    fn found(a: &[Point], b: &[Point], order: Order, options: &Options) -> Vec<Correspondence> {
+        let mut all = Vec::new();
+        matches(a, b, order, 1e-3, options, &mut |c| all.push(c));
+        all
+    }
+
+    #[test]
+    fn a_rectangle_is_its_own_mirror_image_in_two_ways() {
+        let rectangle = points(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]]);
+        let ways = found(&rectangle, &rectangle, Order::Reversed, &Options::default());
+        // Corner 0 to corner 1 (left-right) or to corner 3 (top-bottom).
+        let cyclic = |offset| Correspondence::Cyclic { offset, order: Order::Reversed };
+        assert_eq!(ways, [cyclic(1), cyclic(3)]);
+    }
+
+    #[test]
+    fn without_absolute_values_equal_perimeters_match() {
+        let oblong = points(&[[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]]);
+        let square = points(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
+        assert!(found(&oblong, &square, Order::Same, &Options::default()).is_empty());
+        assert_eq!(found(&oblong, &square, Order::Same, &Options::paper()).len(), 4);
+    }
+
+    #[test]
+    fn a_scalene_triangle_matches_its_mirror_image_in_one_way() {
+        let triangle = points(&[[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+        let image = points(&[[0.0, 0.0], [0.0, 3.0], [-4.0, 0.0]]);
+        assert_eq!(found(&triangle, &image, Order::Reversed, &Options::default()).len(), 1);
+        assert!(found(&triangle, &image, Order::Same, &Options::default()).is_empty());
+    }
+
+    #[test]
+    fn an_extra_corner_is_left_out() {
+        let triangle = points(&[[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+        let image = points(&[[0.0, 0.0], [0.0, 3.0], [-2.0, 1.5], [-4.0, 0.0]]);
+        let ways = found(&triangle, &image, Order::Reversed, &Options::default());
+        let corners = vec![(0, 0), (1, 3), (2, 1)];
+        assert_eq!(ways, [Correspondence::Listed { corners: corners.clone(), order: Order::Reversed }]);
+        let turned = corners.iter().map(|&(i, j)| (j, i)).collect::<Vec<_>>();
+        let Correspondence::Listed { corners: mut back, .. } =
+            found(&image, &triangle, Order::Reversed, &Options::default()).remove(0)
+        else {
+            panic!("the longer loop may come first")
+        };
+        back.sort_unstable();
+        let mut turned = turned;
+        turned.sort_unstable();
+        assert_eq!(back, turned);
+    }
+}

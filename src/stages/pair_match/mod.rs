@@ -1,0 +1,210 @@
+//! Stage 3: corners of each face -> pairs of faces that an isometry may map onto each other.
+//!
+//! In: the [`Outline`]s. Out: [`Matches`]: for each pair how the corners correspond.
+//!
+//! Method: section IV.B, eq. (3): two loops of corners match where the sum of the absolute differences of
+//! consecutive corner distances is near zero, in some cyclic offset and one of two directions (`cyclic`). Faces are
+//! compared only within buckets of equal invariants (`buckets`), and in a bucket of very many congruent faces only a
+//! fixed subset meets all others: a global symmetry takes every face of the subset to some face of the bucket, so
+//! its plane is still among the candidates.
+//!
+//! Cost: faces times the subset's size; corners squared for each pair. It does not promise that matched faces are
+//! congruent: corner distances do not tell a rhombus from a square. The fit decides.
+
+pub mod buckets;
+mod cyclic;
+
+use crate::cancel::Cancel;
+use crate::geometry::Point;
+use crate::stages::corner_filter::Outline;
+use crate::stages::parse::Parsed;
+use crate::stages::{ModelError, Stage};
+
+/// Settings of the stage.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Largest sum of eq. (3) for each corner, as a share of D. Files are precise to about 1e-6 D; parts that are
+    /// meant to be equal differ by less than this, parts meant to differ by more.
+    pub corner_distance: f64,
+    /// Use absolute differences in eq. (3). As the paper's text prints it the sum is a difference of perimeters.
+    pub absolute: bool,
+    /// Compare only faces with equal invariants; the paper compares all with equal corner counts.
+    pub buckets: bool,
+    /// Match mirror images in reversed order only where faces have an outside; the paper tries both orders.
+    pub orientation: bool,
+    /// Corners one face may have more than the other.
+    pub extra_corners: usize,
+    /// Of a bucket, this many faces meet all others; the rest only them.
+    pub subset: usize,
+    /// Pairs in all, as a multiple of the number of faces: bounds time and memory.
+    pub pairs_per_face: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            corner_distance: 1e-3,
+            absolute: true,
+            buckets: true,
+            orientation: true,
+            extra_corners: 2,
+            subset: 8,
+            pairs_per_face: 32,
+        }
+    }
+}
+
+impl Options {
+    /// The paper's reading.
+    pub fn paper() -> Self {
+        Self {
+            absolute: false,
+            buckets: false,
+            orientation: false,
+            subset: 256,
+            pairs_per_face: 256,
+            ..Self::default()
+        }
+    }
+}
+
+/// The direction in which the second face's corners are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Order {
+    /// As direct isometries keep it.
+    Same,
+    /// As mirror images have it.
+    Reversed,
+}
+
+/// What of the two faces corresponds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Correspondence {
+    /// Corner k of the first face to corner `offset` + k (or - k) of the second.
+    Cyclic { offset: u32, order: Order },
+    /// Pairs of corner positions, where one face has more corners than the other.
+    Listed { corners: Vec<(u32, u32)>, order: Order },
+    /// Faces without enough corners: only their centroids (and axes, if they have any).
+    Centroids,
+}
+
+/// Two faces (or one and itself) that may be images of each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FacePair {
+    /// Positions among the outlines; equal for a face that may be its own image.
+    pub faces: [u32; 2],
+    pub correspondence: Correspondence,
+    /// How many pairs of its bucket this one stands for.
+    pub weight: f64,
+}
+
+impl FacePair {
+    /// The corresponding corners of the first and the second face.
+    pub fn corners(&self, outlines: &[Outline]) -> (Vec<Point>, Vec<Point>) {
+        let [a, b] = self.faces.map(|i| &outlines[i as usize].corners);
+        match &self.correspondence {
+            Correspondence::Cyclic { offset, order } => {
+                let images = (0..a.len()).map(|k| b[cyclic::position(k, *offset as usize, *order, b.len())]);
+                (a.clone(), images.collect())
+            }
+            Correspondence::Listed { corners, .. } => {
+                corners.iter().map(|&(i, j)| (a[i as usize], b[j as usize])).unzip()
+            }
+            Correspondence::Centroids => (Vec::new(), Vec::new()),
+        }
+    }
+
+    /// The order of the corners; `None` where only centroids correspond.
+    pub fn order(&self) -> Option<Order> {
+        match &self.correspondence {
+            Correspondence::Cyclic { order, .. } | Correspondence::Listed { order, .. } => Some(*order),
+            Correspondence::Centroids => None,
+        }
+    }
+}
+
+/// The matched pairs.
+#[derive(Clone, Debug, Default)]
+pub struct Matches {
+    pub pairs: Vec<FacePair>,
+    /// Whether the bound on pairs cut the search short.
+    pub truncated: bool,
+}
+
+/// Finds the pairs of faces whose corners, in order, are equally far apart.
+///
+/// # Errors
+/// Only when cancelled.
+pub fn pair_match(
+    parsed: &Parsed,
+    outlines: &[Outline],
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Matches, ModelError> {
+    let size = parsed.measures.tolerance.size();
+    let mut matcher = Matcher {
+        outlines,
+        options,
+        size,
+        room: options.pairs_per_face.saturating_mul(outlines.len()).max(4096),
+        matches: Matches::default(),
+    };
+    let plan = buckets::plan(outlines, &parsed.measures, options);
+    for bucket in &plan {
+        cancel.check().map_err(|c| ModelError::cancelled(Stage::PairMatch, c))?;
+        matcher.bucket(bucket);
+    }
+    Ok(matcher.matches)
+}
+
+/// Collects the matches of one model.
+struct Matcher<'a> {
+    outlines: &'a [Outline],
+    options: &'a Options,
+    size: f64,
+    /// Pairs that may still be kept.
+    room: usize,
+    matches: Matches,
+}
+
+impl Matcher<'_> {
+    /// Lets each face of the bucket's subset meet all faces of its neighbourhood.
+    fn bucket(&mut self, bucket: &buckets::Bucket) {
+        for &(a, b) in &bucket.meetings {
+            if self.room == 0 {
+                self.matches.truncated = true;
+                return;
+            }
+            self.meet(a, b, bucket.weight);
+        }
+    }
+
+    fn meet(&mut self, a: u32, b: u32, weight: f64) {
+        let (p, q) = (&self.outlines[a as usize], &self.outlines[b as usize]);
+        if self.options.buckets && !buckets::alike(p, q, self.size) {
+            return;
+        }
+        let mut keep = |correspondence: Correspondence| {
+            if self.room > 0 {
+                self.room -= 1;
+                self.matches.pairs.push(FacePair { faces: [a, b], correspondence, weight });
+            }
+        };
+        if p.corners.len() < 3 || q.corners.len() < 3 {
+            if self.options.buckets && a != b {
+                keep(Correspondence::Centroids);
+            }
+            return;
+        }
+        let limit = self.options.corner_distance * self.size;
+        let both = !self.options.orientation || !(p.oriented && q.oriented);
+        for order in [Order::Reversed, Order::Same] {
+            // A face is always its own image in the same order: that says nothing of symmetry, unless it has no side.
+            if order == Order::Same && a == b && !both {
+                continue;
+            }
+            cyclic::matches(&p.corners, &q.corners, order, limit, self.options, &mut keep);
+        }
+    }
+}

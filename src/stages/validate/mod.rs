@@ -1,0 +1,245 @@
+//! Stage 5: candidate planes -> those that map surfaces onto surfaces.
+//!
+//! In: [`Candidates`]. Out: [`Validated`]: distinct planes with the pairs that passed, and the sampled surface.
+//!
+//! Method: section IV.D. The paper compares the histograms of the distances of two faces' samples to the plane (eq.
+//! 6), which is undefined for walls parallel to the plane and blind to shifts along it; the default compares the
+//! distances by the one-dimensional Wasserstein distance, then the mirrored samples of each face with the surface of
+//! the other, then the inner loops (`faces`). Before that, candidates are joined into distinct planes, and planes
+//! whose coarse surface support (`support`) is far below the best are dropped.
+//!
+//! Cost: a few hundred queries of the triangle tree for each plane that is kept, some tens for each that is dropped.
+
+pub mod faces;
+pub mod shape;
+pub mod support;
+
+use crate::cancel::Cancel;
+use crate::geometry::{Plane, PlaneIndex};
+use crate::stages::corner_filter::Outline;
+use crate::stages::isometry::{Candidate, Candidates, Source};
+use crate::stages::pair_match::Matches;
+use crate::stages::parse::Parsed;
+use crate::stages::{ModelError, Stage};
+use faces::FaceSamples;
+use support::SurfaceField;
+
+/// Settings of the stage.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Samples of the whole surface; 2,000 rank planes wrongly.
+    pub samples: usize,
+    /// A mirrored sample lies on the surface within this share of D: above the chords of the tessellation.
+    pub on_surface: f64,
+    /// Normals agree up to this angle, degrees: above the kinks of the tessellation, below 45.
+    pub normal_angle_deg: f64,
+    /// Two candidates are one plane up to this angle, degrees ..
+    pub same_angle_deg: f64,
+    /// .. and this distance, as a share of D.
+    pub same_offset: f64,
+    /// Distinct planes whose support is measured, the most voted ones; of each kind of source.
+    pub planes: usize,
+    /// Coarse support a plane may be below the best so far. Larger than the 5 % reported, for 500 samples are rough.
+    pub slack: f64,
+    /// Pairs of faces checked for each plane, the largest first.
+    pub pairs: usize,
+    /// Distance of neighbouring samples on a face, as a share of D.
+    pub face_step: f64,
+    /// Most samples on a face.
+    pub face_samples: usize,
+    /// Largest Wasserstein distance of the distances to the plane, as a share of D.
+    pub wasserstein: f64,
+    /// Largest relative difference of areas.
+    pub area: f64,
+    /// Largest distance of 95 % of the mirrored samples from the other face, as a share of D.
+    pub distance_95: f64,
+    /// Largest distance of any, as a share of D.
+    pub distance_max: f64,
+    /// Judge by the correlation of eq. (6) alone, at least this; 0: by the criteria above.
+    pub correlation: f64,
+    /// Bins of the histograms of eq. (6).
+    pub bins: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            samples: 20_000,
+            on_surface: 0.004,
+            normal_angle_deg: 30.0,
+            same_angle_deg: 0.5,
+            same_offset: 0.002,
+            planes: 256,
+            slack: 0.15,
+            pairs: 4,
+            face_step: 0.02,
+            face_samples: 512,
+            wasserstein: 0.005,
+            area: 0.01,
+            distance_95: 0.005,
+            distance_max: 0.02,
+            correlation: 0.0,
+            bins: 32,
+        }
+    }
+}
+
+impl Options {
+    /// The paper's reading.
+    pub fn paper() -> Self {
+        Self { face_step: 0.01, face_samples: 4096, correlation: 0.9, ..Self::default() }
+    }
+}
+
+/// A plane with the candidates that speak for it.
+#[derive(Clone, Debug)]
+pub struct ValidatedPlane {
+    pub plane: Plane,
+    /// Root mean square distance of mirrored corners from their images, mm.
+    pub residual: f64,
+    /// Votes by area, mm^2.
+    pub weight: f64,
+    pub source: Source,
+    /// Checked pairs, as positions in [`Matches::pairs`].
+    pub pairs: Vec<u32>,
+    /// Mean correlation of eq. (6) over the checked pairs for which it is defined.
+    pub correlation: Option<f64>,
+    /// Coarse surface support; 0 where it was not measured (the paper's profile).
+    pub coarse: f64,
+}
+
+/// What is left, and the surface it was checked against.
+#[derive(Clone, Debug)]
+pub struct Validated {
+    pub planes: Vec<ValidatedPlane>,
+    pub field: SurfaceField,
+    pub repeats: crate::stages::isometry::Repeats,
+}
+
+/// Keeps the candidates that map surfaces onto surfaces.
+///
+/// # Errors
+/// Only when cancelled.
+pub fn validate(
+    parsed: &Parsed,
+    outlines: &[Outline],
+    matches: &Matches,
+    candidates: &Candidates,
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Validated, ModelError> {
+    let cosine = options.normal_angle_deg.to_radians().cos();
+    let field = SurfaceField::new(parsed, options.samples, options.on_surface, cosine);
+    let mut samples = FaceSamples::new(parsed, outlines, options);
+    let cancelled = |c| ModelError::cancelled(Stage::Validate, c);
+    let mut planes = Vec::new();
+    if options.correlation > 0.0 {
+        for candidate in &candidates.mirrors {
+            cancel.check().map_err(cancelled)?;
+            planes.extend(by_correlation(matches, candidate, &mut samples, options));
+        }
+    } else {
+        let mut best: f64 = 0.0;
+        for group in distinct(parsed, &candidates.mirrors, options) {
+            cancel.check().map_err(cancelled)?;
+            let needed = (best - options.slack).max(0.05);
+            let Some(coarse) = field.reaches(&group.plane.reflection(), needed) else { continue };
+            best = best.max(coarse);
+            planes.extend(check(group, coarse, matches, &field, &mut samples));
+        }
+        planes.retain(|p| p.coarse >= best - options.slack);
+    }
+    Ok(Validated { planes, field, repeats: candidates.repeats })
+}
+
+/// The paper: every pair stands for itself.
+fn by_correlation(
+    matches: &Matches,
+    candidate: &Candidate,
+    samples: &mut FaceSamples,
+    options: &Options,
+) -> Option<ValidatedPlane> {
+    let pair = candidate.pair?;
+    let [a, b] = matches.pairs[pair as usize].faces;
+    let correlation = samples.correlation(a, b, &candidate.plane)?;
+    (correlation >= options.correlation).then(|| ValidatedPlane {
+        plane: candidate.plane,
+        residual: candidate.residual,
+        weight: candidate.weight,
+        source: candidate.source,
+        pairs: vec![pair],
+        correlation: Some(correlation),
+        coarse: 0.0,
+    })
+}
+
+/// Candidates that are one plane.
+#[derive(Clone, Debug)]
+struct Group {
+    plane: Plane,
+    residual: f64,
+    weight: f64,
+    source: Source,
+    /// The first few pairs, largest votes first.
+    pairs: Vec<u32>,
+}
+
+/// Joins candidates into distinct planes by leaders, the most reliable source and the largest vote first, and keeps
+/// the most voted planes of each source.
+fn distinct(parsed: &Parsed, candidates: &[Candidate], options: &Options) -> Vec<Group> {
+    let measures = &parsed.measures;
+    let mut order: Vec<_> = candidates.iter().filter(|c| c.plane.offset.is_finite()).collect();
+    order.sort_by(|a, b| a.source.cmp(&b.source).then(b.weight.total_cmp(&a.weight)));
+    let distance = measures.tolerance.length(options.same_offset);
+    let mut index = PlaneIndex::new(measures.centroid, options.same_angle_deg.to_radians(), distance);
+    let mut groups: Vec<Group> = Vec::new();
+    for candidate in order {
+        if let Some(i) = index.find(&candidate.plane) {
+            groups[i].weight += candidate.weight;
+            if groups[i].pairs.len() < options.pairs {
+                groups[i].pairs.extend(candidate.pair);
+            }
+        } else {
+            index.add(candidate.plane);
+            let Candidate { plane, residual, weight, source, pair } = *candidate;
+            groups.push(Group { plane, residual, weight, source, pairs: pair.into_iter().collect() });
+        }
+    }
+    groups.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    let mut taken = std::collections::BTreeMap::<Source, usize>::new();
+    groups.retain(|g| {
+        let count = taken.entry(g.source).or_default();
+        *count += 1;
+        *count <= options.planes
+    });
+    groups
+}
+
+/// Support from which a plane needs no pair to speak for it: the halves may be split differently.
+const SELF_EVIDENT: f64 = 0.9;
+
+/// Checks the pairs of a plane; `None` where it has pairs and all of them fail.
+fn check(
+    group: Group,
+    coarse: f64,
+    matches: &Matches,
+    field: &SurfaceField,
+    samples: &mut FaceSamples,
+) -> Option<ValidatedPlane> {
+    let had_pairs = !group.pairs.is_empty();
+    let mut correlations = Vec::new();
+    let mut passes = |pair: &u32| {
+        let [a, b] = matches.pairs[*pair as usize].faces;
+        correlations.extend(samples.correlation(a, b, &group.plane));
+        samples.mirrored(a, b, &group.plane, field)
+    };
+    let pairs: Vec<_> = group.pairs.into_iter().filter(|pair| passes(pair)).collect();
+    let mean = correlations.iter().sum::<f64>() / correlations.len() as f64;
+    if had_pairs && pairs.is_empty() && coarse < SELF_EVIDENT {
+        return None;
+    }
+    let correlation = (!correlations.is_empty()).then_some(mean);
+    let Group { plane, residual, weight, source, .. } = group;
+    Some(ValidatedPlane { plane, residual, weight, source, pairs, correlation, coarse })
+}

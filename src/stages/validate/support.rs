@@ -1,0 +1,149 @@
+//! Surface support: the share of a surface that an isometry maps onto the surface.
+
+use crate::brep::PlacedFaceId;
+use crate::brep::sample::{Sample, sample_mesh};
+use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::bvh::Bvh;
+use crate::geometry::{Isometry, Point, Vector};
+use crate::stages::parse::Parsed;
+
+/// Every how many-th sample belongs to the first round, and to the first two.
+const STRIDES: [usize; 2] = [40, 5];
+
+/// The surface of a model, ready to be asked whether points lie on it.
+#[derive(Clone, Debug)]
+pub struct SurfaceField {
+    /// Triangles under the number of their face.
+    tree: Bvh,
+    /// In an order in which every beginning is spread over the surface (as far as the rounds go).
+    samples: Vec<Sample>,
+    /// Samples in the first, first two, and all rounds.
+    rounds: [usize; 3],
+    /// Distance within which a point lies on the surface, mm.
+    radius: f64,
+    /// Least cosine between normals that agree.
+    cosine: f64,
+    /// Whether the faces have an outside; without it, opposite normals agree too.
+    oriented: bool,
+}
+
+/// How exactly a support is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Round {
+    /// A fortieth of the samples: finds planes that are out of the question.
+    Coarse,
+    /// A fifth.
+    Middle,
+    /// All.
+    Full,
+}
+
+impl SurfaceField {
+    /// Samples the mesh of a model at about `count` points; `share` of D is the distance within which they agree.
+    pub fn new(parsed: &Parsed, count: usize, share: f64, cosine: f64) -> Self {
+        let mesh = &parsed.mesh;
+        let face_triangles = |i: usize| {
+            let triangles = mesh.triangles_of(PlacedFaceId(i as u32));
+            triangles.map(move |t| (mesh.corners(t), i as u32))
+        };
+        let tree = Bvh::new((0..mesh.faces.len()).flat_map(face_triangles));
+        let samples = sample_mesh(mesh, count);
+        let round = |i: usize| STRIDES.iter().position(|s| i.is_multiple_of(*s)).unwrap_or(STRIDES.len());
+        let mut order: Vec<_> = (0..samples.len()).collect();
+        order.sort_by_key(|&i| round(i));
+        let upto = |r: usize| order.partition_point(|&i| round(i) <= r);
+        let rounds = [upto(0), upto(1), upto(2)];
+        let samples = order.iter().map(|&i| samples[i]).collect();
+        let oriented = parsed.model.bodies.iter().all(|b| b.solid);
+        Self { tree, samples, rounds, radius: parsed.measures.tolerance.length(share), cosine, oriented }
+    }
+
+    /// The samples of a round and those before it.
+    pub fn samples(&self, round: Round) -> &[Sample] {
+        &self.samples[..self.rounds[round as usize]]
+    }
+
+    /// The triangles, each under the number of its placed face.
+    pub fn tree(&self) -> &Bvh {
+        &self.tree
+    }
+
+    /// Distance within which a point lies on the surface, mm.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Whether two unit normals agree.
+    pub fn agree(&self, a: &Vector, b: &Vector) -> bool {
+        let cosine = a.dot(b);
+        cosine >= self.cosine || (!self.oriented && -cosine >= self.cosine)
+    }
+
+    /// Whether the surface has a point near `p` with this normal.
+    pub fn holds(&self, p: &Point, normal: &Vector) -> bool {
+        self.tree.any_within(p, self.radius, |t| self.agree(&t.normal, normal))
+    }
+
+    fn maps(&self, isometry: &Isometry, sample: &Sample) -> bool {
+        self.holds(&isometry.apply(&sample.point), &(isometry.rotation * sample.normal))
+    }
+
+    /// The share of the samples that `isometry` maps onto the surface, 0 to 1.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn support(&self, isometry: &Isometry, round: Round, cancel: &Cancel) -> Result<f64, Cancelled> {
+        let samples = self.samples(round);
+        let mut hits = 0;
+        for chunk in samples.chunks(4096) {
+            cancel.check()?;
+            hits += chunk.iter().filter(|s| self.maps(isometry, s)).count();
+        }
+        Ok(hits as f64 / samples.len().max(1) as f64)
+    }
+
+    /// The coarse support, or `None` as soon as it is (with three standard deviations) below `needed`.
+    pub fn reaches(&self, isometry: &Isometry, needed: f64) -> Option<f64> {
+        let samples = self.samples(Round::Coarse);
+        let mut hits = 0;
+        // A step coprime to most counts spreads also the first few samples over the whole surface.
+        let step = spread_step(samples.len());
+        for n in 1..=samples.len() {
+            hits += usize::from(self.maps(isometry, &samples[n * step % samples.len()]));
+            if n >= 16 && n % 8 == 0 {
+                let share = hits as f64 / n as f64;
+                let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();
+                if share + 3.0 * deviation < needed {
+                    return None;
+                }
+            }
+        }
+        let share = hits as f64 / samples.len().max(1) as f64;
+        (share >= needed || samples.is_empty()).then_some(share)
+    }
+}
+
+/// A number near 0.618 n without a common factor with `n`.
+fn spread_step(n: usize) -> usize {
+    let golden = (n as f64 * 0.618) as usize;
+    (golden.max(1)..=golden.max(1) + n).find(|&s| gcd(s, n) == 1).unwrap_or(1)
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_step_visits_every_sample() {
+        for n in [1, 2, 16, 500, 501] {
+            let step = spread_step(n);
+            let mut seen = vec![false; n];
+            (1..=n).for_each(|i| seen[i * step % n] = true);
+            assert!(seen.iter().all(|&s| s));
+        }
+    }
+}
