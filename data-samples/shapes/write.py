@@ -77,8 +77,10 @@ def settle(path):
     title = f"FILE_NAME('{path.name}','{STAMP}',('symalign'),(''),'data-samples','data-samples','');"
     text = re.sub(r"FILE_NAME\(.*?\);", title, text, count=1, flags=re.S)
     text = re.sub(r"CALENDAR_DATE\([^)]*\)", "CALENDAR_DATE(2026,1,1)", text)
-    text = re.sub(r"LOCAL_TIME\(\d+,\d+,[0-9.]+", "LOCAL_TIME(0,0,0.", text)
+    text = re.sub(r"LOCAL_TIME\(\d+,\d+,[^,]*,", "LOCAL_TIME(0,0,0.,", text)
     text = re.sub(r"COORDINATED_UNIVERSAL_TIME_OFFSET\([^)]*\)", "COORDINATED_UNIVERSAL_TIME_OFFSET(0,0,.AHEAD.)", text)
+    text = re.sub(r"PERSON\('[^;]*;", "PERSON('symalign','','symalign',$,$,$);", text)
+    text = re.sub(r" ORGANIZATION\('[^;]*;", " ORGANIZATION('symalign','Unspecified','');", text)
     text = re.sub(r"#\d+ = [^;]*?(?:'model \d|OCCURRENCE\()[^;]*;", lambda found: re.sub(r"\n\s*", "", found.group()), text)
     text = re.sub(r"'model \d+((?:\.\d+)*)'", rf"'{path.stem}\1'", text)  # the kernel numbers products in one count
     count = itertools.count(1)
