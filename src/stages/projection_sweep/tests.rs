@@ -18,12 +18,14 @@ fn symmetric(normal: Vector, through: &Point) -> Symmetries {
         residual: 0.0,
         pairs: Vec::new(),
         selfs: Vec::new(),
+        source: crate::stages::isometry::Source::Corners,
+        correlation: None,
     };
-    Symmetries { label: Label::Exact, planes: vec![plane], axes: Vec::new() }
+    Symmetries { label: Label::Exact, planes: vec![plane], axes: Vec::new(), repeats: Default::default() }
 }
 
 fn none() -> Symmetries {
-    Symmetries { label: Label::None, planes: Vec::new(), axes: Vec::new() }
+    Symmetries { label: Label::None, planes: Vec::new(), axes: Vec::new(), repeats: Default::default() }
 }
 
 fn sweep(mesh: Mesh, normal: Vector, options: &Options) -> CanonicalFrame {
