@@ -10,6 +10,8 @@ use serde::Serialize;
 
 /// Colours of the frames, told apart by people with any colour vision (Okabe and Ito 2008, without yellow).
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7f7f7f"];
+/// Long enough to be seen between the round ends of thick lines.
+const DASH: &str = "9 7";
 /// The colour of the random ranking.
 const CHANCE: &str = "#888888";
 
@@ -97,7 +99,7 @@ fn lines(
         let points = numbers.recall.iter().zip(series).filter_map(|(&recall, p)| p.map(|p| (recall, p)));
         let dash = match (style.name, style.dashed) {
             ("chance", _) => LineStyle::Dotted,
-            (_, true) => LineStyle::Dashed,
+            (_, true) => LineStyle::Custom(DASH.into()),
             (_, false) => LineStyle::Solid,
         };
         let line = LinePlot::new().with_data(points).with_color(colour(place, style.colour)).with_line_style(dash);
