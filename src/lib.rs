@@ -8,7 +8,6 @@ pub mod distance;
 pub mod error;
 pub mod evaluate;
 pub mod geometry;
-pub mod picture;
 pub mod pipeline;
 pub mod render;
 pub mod search;

@@ -1,6 +1,7 @@
 //! Nearest neighbours in a store: exact, by the distances of eq. 8.
 
 mod page;
+pub mod picture;
 
 pub use page::{Asked, write_page};
 

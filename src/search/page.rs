@@ -1,8 +1,8 @@
 //! The hits of a query as a page with pictures.
 
+use super::picture::{data_uri, grey_png};
 use super::{Hit, in_words};
 use crate::error::{Result, RunError};
-use crate::picture::{data_uri, grey_png};
 use crate::store::{Store, THUMBNAIL};
 use askama::Template;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use super::super::Evaluation;
 use crate::error::Result;
-use crate::picture::{data_uri, grey_png};
+use crate::search::picture::{data_uri, grey_png};
 use crate::search::{Rows, in_words};
 use crate::store::{Store, THUMBNAIL};
 use serde::Serialize;
