@@ -6,6 +6,7 @@ use super::bodies::BodyKind;
 use super::records::{Fault, File, Read};
 use super::representation::{DEEPEST_NESTING, Placed, Representations};
 use super::structure::{Structure, Usage, structure};
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Transform;
 
 /// The items to build and place, and the branches that were left out.
@@ -19,11 +20,11 @@ pub(super) struct Assembly {
 /// Places the items of all products, then those of representations that no product leads to.
 ///
 /// `room` is how many items may be placed at most.
-pub(super) fn assemble(file: File, room: usize) -> Assembly {
+pub(super) fn assemble(file: File, room: usize, cancel: &Cancel) -> Result<Assembly, Cancelled> {
     let structure = structure(&file);
     let mut walk = Walk {
         structure: &structure,
-        representations: Representations::new(file, &structure, room),
+        representations: Representations::new(file, &structure, room, cancel),
         own: FxHashMap::default(),
         placed: Vec::new(),
     };
@@ -36,7 +37,8 @@ pub(super) fn assemble(file: File, room: usize) -> Assembly {
     if placed.is_empty() {
         placed = bare_items(&file, &mut faults, room);
     }
-    Assembly { placed, faults, has_representations: !structure.representations.is_empty() }
+    cancel.check()?;
+    Ok(Assembly { placed, faults, has_representations: !structure.representations.is_empty() })
 }
 
 /// The products that are part of no other; where all are, as in a cycle, the first one.
@@ -72,13 +74,16 @@ impl Walk<'_> {
         let structure = self.structure;
         for usage in structure.parts.get(&product).into_iter().flatten() {
             if let Err(fault) = self.part(usage, placement, path, above) {
-                self.representations.faults.push((usage.entity, fault));
+                self.representations.note(usage.entity, fault);
             }
         }
     }
 
     /// Places a product used in another one.
     fn part(&mut self, usage: &Usage, placement: &Transform, path: &mut Vec<u64>, above: &mut Vec<u64>) -> Read<()> {
+        if self.representations.is_cancelled() {
+            return Ok(());
+        }
         if above.contains(&usage.child) {
             return Err(Fault::new(usage.child, "a product that is part of itself"));
         }
