@@ -1,8 +1,9 @@
 //! Curve entities -> [`Curve`].
 
+use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Cursor, Fault, Read, Record};
+use super::records::{Fault, Read, Record};
 use super::splines;
 use crate::brep::Curve;
 use crate::geometry::Point;

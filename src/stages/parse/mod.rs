@@ -14,6 +14,7 @@
 
 mod assembly;
 mod bodies;
+mod cursor;
 mod curves;
 mod facets;
 mod header;

@@ -1,8 +1,9 @@
 //! B-spline curves and surfaces in all their encodings -> NURBS with written-out knots.
 
+use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Cursor, Read, Record};
+use super::records::{Read, Record};
 use crate::brep::nurbs::{NurbsCurve, NurbsSurface};
 use crate::geometry::Point;
 
