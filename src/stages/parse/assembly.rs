@@ -3,6 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bodies::BodyKind;
+use super::keyword::Kind;
 use super::records::{Fault, File, Read};
 use super::representation::{DEEPEST_NESTING, Placed, Representations};
 use super::structure::{Structure, Usage, structure};
@@ -135,12 +136,21 @@ impl Walk<'_> {
         items
     }
 
+    /// Whether a representation has mapped items.
+    fn maps_others(&mut self, representation: u64) -> bool {
+        let file = self.representations.file;
+        let is_mapped = |item: &u64| file.record(*item).is_ok_and(|r| r.is(Kind::MappedItem));
+        self.representations.content(representation).is_ok_and(|content| content.items.iter().any(is_mapped))
+    }
+
     /// Places the representations that nothing has placed, those that others map last; what was placed already is not
     /// placed again, since views and validation properties name the same items, as they name faces of shells.
     fn orphans(&mut self) {
         let mapped: FxHashSet<u64> = self.structure.mapped.iter().copied().collect();
         let structure = self.structure;
-        let (last, first): (Vec<u64>, Vec<u64>) = structure.representations.iter().partition(|r| mapped.contains(r));
+        let (mut last, first): (Vec<u64>, Vec<u64>) =
+            structure.representations.iter().partition(|r| mapped.contains(r));
+        last.sort_by_key(|id| !self.maps_others(*id));
         let mut known: FxHashSet<u64> = self.placed.iter().map(|p| p.item).collect();
         for id in first.into_iter().chain(last) {
             if !self.representations.placed.contains(&id) {
