@@ -1,1 +1,136 @@
 //! Pictures of models: shaded, anti-aliased, hidden surfaces hidden.
+//!
+//! Known to `geometry`, `brep` and (in [`figures`]) the outputs of the stages. [`shaded`] draws a mesh by a z-buffer
+//! with more samples than pixels; PNGs are encoded by tiny-skia.
+
+mod camera;
+mod canvas;
+pub mod figures;
+mod plot;
+mod text;
+
+use tiny_skia::Pixmap;
+
+use crate::brep::measure::Measures;
+use crate::brep::{Mesh, PlacedFaceId};
+use crate::geometry::{Frame, Plane, Vector};
+
+pub use camera::Camera;
+pub use canvas::{Canvas, Paint, Rgb};
+pub use plot::area_curve;
+
+/// Pixels on a side of a thumbnail.
+pub const THUMBNAIL: usize = 96;
+
+/// Samples to a pixel, along each side: 3 is the least that shows no stairs.
+const SAMPLES: usize = 3;
+/// The share of light that reaches faces turned away from the lamp.
+const AMBIENT: f64 = 0.38;
+/// Plain surfaces.
+pub const GREY: Rgb = [176, 180, 186];
+
+/// What is drawn: a mesh as seen from the corner of its frame.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    pub mesh: &'a Mesh,
+    pub measures: &'a Measures,
+    pub frame: &'a Frame,
+    /// The plane that [`Paint::Split`] splits at.
+    pub plane: Option<Plane>,
+    /// How much more than the model is shown: 1 fits it.
+    pub room: f64,
+}
+
+/// Draws the faces, each in its paint, on white, with their outlines; `side` pixels wide and high.
+///
+/// The picture is not yet resolved, so that planes may be laid over it.
+pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize) -> Canvas {
+    let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * SAMPLES).widened(scene.room);
+    let mut canvas = Canvas::new(camera, side, SAMPLES);
+    let lights = lights(scene.mesh, canvas.camera());
+    for number in 0..scene.mesh.faces.len() {
+        let id = PlacedFaceId(number as u32);
+        let paint = paint(id);
+        for t in scene.mesh.triangles_of(id) {
+            let corners = scene.mesh.triangles[t].map(|i| {
+                let point = &scene.mesh.points[i as usize];
+                let across = scene.plane.map_or(0.0, |plane| plane.signed_distance(point));
+                (*point, lights[i as usize], across)
+            });
+            canvas.triangle(&corners, paint, number as u32);
+        }
+    }
+    canvas.outline();
+    canvas
+}
+
+/// A grey picture of the model for stores and galleries: [`THUMBNAIL`]^2 bytes, row by row from the top, 255 is white.
+pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame) -> Vec<u8> {
+    let scene = Scene { mesh, measures, frame, plane: None, room: 1.0 };
+    let picture = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL).resolved();
+    picture.pixels().iter().map(|p| luminance([p.red(), p.green(), p.blue()])).collect()
+}
+
+/// The PNG file of a picture.
+pub fn png(picture: &Pixmap) -> std::io::Result<Vec<u8>> {
+    picture.encode_png().map_err(std::io::Error::other)
+}
+
+fn luminance([r, g, b]: Rgb) -> u8 {
+    ((u32::from(r) * 299 + u32::from(g) * 587 + u32::from(b) * 114 + 500) / 1000) as u8
+}
+
+/// How much light reaches each point of the mesh, 0 to 1: Lambert's law on both sides, with normals averaged over the
+/// triangles of the face that meet there (points belong to one face, so that edges stay sharp).
+fn lights(mesh: &Mesh, camera: &Camera) -> Vec<f64> {
+    let mut normals = vec![Vector::zeros(); mesh.points.len()];
+    for (t, triangle) in mesh.triangles.iter().enumerate() {
+        let normal = mesh.doubled_normal(t);
+        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+    }
+    let light = |normal: &Vector| {
+        let length = normal.norm();
+        if length > 0.0 { AMBIENT + (1.0 - AMBIENT) * camera.lamp().dot(normal).abs() / length } else { AMBIENT }
+    };
+    normals.iter().map(light).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::alignment::shapes;
+    use crate::geometry::Point;
+
+    fn own_frame(measures: &Measures) -> Frame {
+        Frame { axes: [Vector::x(), Vector::y(), Vector::z()], origin: measures.centroid }
+    }
+
+    #[test]
+    fn a_thumbnail_shows_three_sides_of_a_box_in_three_greys() {
+        let mesh = shapes::cuboid(1.0, 1.0, 1.0);
+        let measures = shapes::measures(&mesh);
+        let picture = thumbnail(&mesh, &measures, &own_frame(&measures));
+        assert_eq!(picture.len(), THUMBNAIL * THUMBNAIL);
+        assert_eq!(picture[0], 255, "the corner is background");
+        assert!(picture[THUMBNAIL * 48 + 48] < 240, "the middle is the box");
+    }
+
+    #[test]
+    fn the_nearer_of_two_sheets_hides_the_other() {
+        let near = shapes::mapped(&shapes::rectangle(2.0, 2.0), |p| p + Vector::new(0.0, 0.0, 1.0));
+        let mut mesh = shapes::joined(&near, &shapes::rectangle(2.0, 2.0));
+        let (mut first, mut second) = (mesh.faces[0].clone(), mesh.faces[0].clone());
+        (first.triangles, second.triangles) = (0..2, 2..4);
+        mesh.faces = vec![first, second];
+        let measures = shapes::measures(&mesh);
+        let frame = own_frame(&measures);
+        let scene = Scene { mesh: &mesh, measures: &measures, frame: &frame, plane: None, room: 1.0 };
+        let paint = |id: PlacedFaceId| Paint::Plain(if id.0 == 0 { [200, 0, 0] } else { [0, 0, 200] });
+        let canvas = shaded(&scene, &paint, 64);
+        let [x, y, _] =
+            canvas.camera().project(&Point::new(1.0, 1.0, if canvas.camera().lamp().z > 0.0 { 1.0 } else { 0.0 }));
+        let picture = canvas.resolved();
+        let pixel = picture.pixel(x as u32 / SAMPLES as u32, y as u32 / SAMPLES as u32).unwrap();
+        assert!(pixel.red().abs_diff(pixel.blue()) > 80, "{pixel:?}");
+    }
+}

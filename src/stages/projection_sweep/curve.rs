@@ -127,7 +127,7 @@ mod tests {
         let options = Options::default();
         let angles = options.angles();
         let areas = Kink.areas(&angles, &Cancel::new()).unwrap();
-        let found = smallest(&mut Kink, &Sweep { angles, areas }, &options, &Cancel::new()).unwrap();
+        let found = smallest(&mut Kink, &Sweep { angles, areas, chosen: 0.0 }, &options, &Cancel::new()).unwrap();
         assert!((found.angle - 0.3).abs() < 2e-6, "{found:?}");
         assert!((found.area - 1.0).abs() < 1e-5 && (found.third_area - 2.0).abs() < 1e-5);
     }

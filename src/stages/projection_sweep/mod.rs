@@ -135,6 +135,8 @@ pub struct Sweep {
     pub angles: Vec<f64>,
     /// Areas of the shadows, mm^2.
     pub areas: Vec<f64>,
+    /// The angle chosen, radians, within half a turn of the first.
+    pub chosen: f64,
 }
 
 /// The canonical pose of a model.
@@ -200,13 +202,14 @@ fn turn(
     };
     let angles = options.angles();
     let areas = shadows.areas(&angles, cancel)?;
-    let sweep = Sweep { angles, areas };
+    let mut sweep = Sweep { angles, areas, chosen: 0.0 };
     let axisymmetric = curve::contrast(&sweep.areas) < options.axisymmetric_contrast;
     let choice = if axisymmetric || options.second_axis == SecondAxis::Pca {
         curve::at(shadows, table.largest_variance, cancel)?
     } else {
         curve::smallest(shadows, &sweep, options, cancel)?
     };
+    sweep.chosen = choice.angle.rem_euclid(std::f64::consts::PI);
     Ok(Swept { choice, sweep, axisymmetric })
 }
 
