@@ -11,8 +11,8 @@ const STEPS: usize = 30;
 const SMALL_STEP: f64 = 1e-12;
 /// Samples in each knot span when there is no hint.
 const SAMPLES: usize = 12;
-/// Grid lines in each direction at most when there is no hint.
-const MAX_GRID: usize = 64;
+/// Nodes of the grid that finds a start when there is no hint.
+const MAX_NODES: usize = 16_384;
 
 /// A parameter interval, closed in itself where the period is given.
 struct Range {
@@ -57,29 +57,51 @@ pub(super) fn closest_on_surface(surface: &Surface, p: &Point, hint: Option<[f64
     let ranges = [Range::new(u0, u1, periods[0]), Range::new(v0, v1, periods[1])];
     let start = match hint {
         Some(hint) => hint,
-        None => best_of_grid(surface, p)?,
+        None => *Samples::of(surface).nearest(p, 1).first()?,
     };
     newton_on_surface(surface, &ranges, p, start)
 }
 
-/// The best point of a grid over the domain (clipped to something finite), finer where there are many knot spans.
-pub(super) fn best_of_grid(surface: &Surface, p: &Point) -> Option<[f64; 2]> {
-    let [u0, u1, v0, v1] = surface.domain().map(|a| a.clamp(-1e6, 1e6));
-    let [nu, nv] = match surface {
-        Surface::Nurbs(nurbs) => nurbs.spans().map(|n| (3 * n + 1).clamp(6, MAX_GRID)),
-        _ => [24, 24],
-    };
-    let mut best = (f64::INFINITY, None);
-    for i in 0..=nu {
-        for j in 0..=nv {
-            let uv = [u0 + (u1 - u0) * i as f64 / nu as f64, v0 + (v1 - v0) * j as f64 / nv as f64];
-            let distance = (surface.point(uv[0], uv[1]) - p).norm_squared();
-            if distance < best.0 {
-                best = (distance, Some(uv));
-            }
+/// A surface sampled on a grid over its domain (clipped to something finite), finer where there are many knot spans.
+#[derive(Clone, Debug)]
+pub(super) struct Samples {
+    columns: usize,
+    nodes: Vec<([f64; 2], Point)>,
+}
+
+impl Samples {
+    pub fn of(surface: &Surface) -> Self {
+        let [u0, u1, v0, v1] = surface.domain().map(|a| a.clamp(-1e6, 1e6));
+        let mut cells = match surface {
+            Surface::Nurbs(nurbs) => nurbs.spans().map(|n| (3 * n + 1).max(6)),
+            _ => [24, 24],
+        };
+        while (cells[0] + 1) * (cells[1] + 1) > MAX_NODES {
+            let longer = usize::from(cells[1] > cells[0]);
+            cells[longer] = cells[longer].div_ceil(2);
         }
+        let [nu, nv] = cells;
+        let at = |from: f64, to: f64, i: usize, n: usize| from + (to - from) * i as f64 / n as f64;
+        let uv = (0..=nu).flat_map(|i| (0..=nv).map(move |j| [at(u0, u1, i, nu), at(v0, v1, j, nv)]));
+        Self { columns: nv + 1, nodes: uv.map(|uv| (uv, surface.point(uv[0], uv[1]))).collect() }
     }
-    best.1
+
+    /// The parameters of at most `count` samples that are nearer to `p` than the samples around them, nearest first.
+    pub fn nearest(&self, p: &Point, count: usize) -> Vec<[f64; 2]> {
+        let distances: Vec<f64> = self.nodes.iter().map(|(_, q)| (q - p).norm_squared()).collect();
+        let (n, columns) = (distances.len(), self.columns);
+        let lowest = |&i: &usize| {
+            let d = distances[i];
+            (i % columns == 0 || d <= distances[i - 1])
+                && (i % columns + 1 == columns || d <= distances[i + 1])
+                && (i < columns || d <= distances[i - columns])
+                && (i + columns >= n || d <= distances[i + columns])
+        };
+        let mut minima: Vec<usize> = (0..n).filter(lowest).collect();
+        minima.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
+        minima.truncate(count);
+        minima.into_iter().map(|i| self.nodes[i].0).collect()
+    }
 }
 
 /// Minimises |S(u, v) - p|^2 by Newton's method, with the Gauss-Newton matrix where the full one is not positive.

@@ -63,7 +63,7 @@ fn extruded(profile: &Curve, direction: &Vector) -> Option<Surface> {
         }
         Curve::Circle { placement, radius } if placement.z.cross(&along).norm() <= PARALLEL => {
             // Turned the other way round the normal of the extrusion points inwards: not our cylinder.
-            (placement.z.dot(&along) > 0.0).then(|| Surface::Cylinder { placement: *placement, radius: *radius })
+            (placement.z.dot(&along) > 0.0).then_some(Surface::Cylinder { placement: *placement, radius: *radius })
         }
         _ => None,
     }
@@ -107,7 +107,7 @@ fn turned_circle(axis: &Placement, circle: &Placement, radius: f64) -> Option<Su
     let out = if distance > 1e-9 * radius { axis.x * centre.x + axis.y * centre.y } else { return None };
     let upwards = circle.z.cross(&out).dot(&axis.z) > 0.0;
     let coplanar = circle.z.dot(&out).abs() <= PARALLEL * distance;
-    (upwards && coplanar && distance > radius).then(|| Surface::Torus { placement, major: distance, minor: radius })
+    (upwards && coplanar && distance > radius).then_some(Surface::Torus { placement, major: distance, minor: radius })
 }
 
 /// Some placement with the given z axis.

@@ -168,18 +168,8 @@ struct Tracer<'a> {
 
 impl Tracer<'_> {
     fn map(&mut self, p: &Point) -> Result<(Uv, Option<usize>), Unmapped> {
-        let miss = |uv: &Uv| (self.chart.point(*uv) - p).norm();
-        let near = self.chart.surface.project(p, self.hint).map(|uv| (miss(&uv), uv));
-        let good = near.filter(|n| n.0 <= 0.02 * self.far);
-        let best = match (good, self.hint) {
-            (Some(found), _) => Some(found),
-            (None, Some(_)) => {
-                let fresh = self.chart.surface.project(p, None).map(|uv| (miss(&uv), uv));
-                [near, fresh].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))
-            }
-            (None, None) => near,
-        };
-        let (distance, uv) = best.ok_or(Unmapped { distance: f64::INFINITY })?;
+        let (distance, uv) =
+            self.chart.nearest(p, self.hint, 0.02 * self.far).ok_or(Unmapped { distance: f64::INFINITY })?;
         if distance.is_nan() || distance > self.far {
             return Err(Unmapped { distance });
         }

@@ -1,13 +1,17 @@
 //! The surface of one face, made ready for tessellation.
 
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 use super::boundary::Path;
 use super::edges::{Fineness, angular_step};
 use crate::brep::Surface;
+use crate::brep::project::Samples;
 use crate::brep::surface::Jet;
 use crate::geometry::{Point, Vector};
 
+/// Places from which the nearest point of a free-form surface is looked for.
+const MAX_STARTS: usize = 8;
 /// Grid lines of one face in each direction at most.
 const MAX_LINES: usize = 128;
 
@@ -25,6 +29,7 @@ pub(super) struct Chart<'a> {
     wraps: bool,
     /// Collapsed sides: [u low, u high, v low, v high].
     pub poles: [bool; 4],
+    samples: OnceCell<Samples>,
 }
 
 impl<'a> Chart<'a> {
@@ -48,7 +53,8 @@ impl<'a> Chart<'a> {
         let (domain, periods) = (surface.domain(), surface.periods());
         let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
             && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
-        let mut chart = Self { surface, domain, periods, flipped: !same_sense, wraps, poles: [false; 4] };
+        let mut chart =
+            Self { surface, domain, periods, flipped: !same_sense, wraps, poles: [false; 4], samples: OnceCell::new() };
         chart.poles = chart.find_poles(size);
         chart
     }
@@ -64,12 +70,12 @@ impl<'a> Chart<'a> {
     }
 
     fn wrapped(&self, mut uv: Uv) -> Uv {
-        for i in 0..2 {
+        for (i, x) in uv.iter_mut().enumerate() {
             let (from, to) = (self.domain[2 * i], self.domain[2 * i + 1]);
             if let Some(period) = self.periods[i]
-                && !(from..=to).contains(&uv[i])
+                && !(from..=to).contains(x)
             {
-                uv[i] = from + (uv[i] - from).rem_euclid(period);
+                *x = from + (*x - from).rem_euclid(period);
             }
         }
         uv
@@ -131,6 +137,30 @@ impl<'a> Chart<'a> {
         })
     }
 
+    /// The nearest point of the surface and how far it is: from `hint` if that leads to one nearer than `good`, else
+    /// from several samples, as a coiled surface has many places that look nearest from nearby.
+    pub fn nearest(&self, p: &Point, hint: Option<Uv>, good: f64) -> Option<(f64, Uv)> {
+        let from = |hint: Option<Uv>| self.surface.project(p, hint).map(|uv| ((self.point(uv) - p).norm(), uv));
+        if !matches!(*self.surface, Surface::Nurbs(_) | Surface::Offset { .. }) {
+            let near = from(hint);
+            return match (near, hint) {
+                (Some(found), Some(_)) if found.0 > good => from(None).filter(|n| n.0 < found.0).or(near),
+                _ => near,
+            };
+        }
+        let mut best = hint.and_then(|hint| from(Some(hint)));
+        if best.is_none_or(|b| b.0 > good) {
+            for start in self.samples.get_or_init(|| Samples::of(&self.surface)).nearest(p, MAX_STARTS) {
+                let found = from(Some(start));
+                best = [best, found].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+                if best.is_some_and(|b| b.0 <= good) {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
     /// How long a unit step of u and of v is around the middle of the rectangle, mm.
     pub fn scale(&self, [u0, u1, v0, v1]: [f64; 4]) -> [f64; 2] {
         let mut longest = [0.0_f64; 2];
@@ -166,9 +196,11 @@ impl<'a> Chart<'a> {
     fn sampled_steps(&self, [u0, u1, v0, v1]: [f64; 4], fineness: &Fineness) -> [usize; 2] {
         let spans = match &*self.surface {
             Surface::Nurbs(nurbs) => nurbs.spans(),
+            Surface::Extrusion { profile, .. } => [profile.breaks().len().max(4), 1],
+            Surface::Revolution { profile, .. } => [4, profile.breaks().len().max(4)],
             _ => [4, 4],
         };
-        let samples = spans.map(|n| (2 * n + 2).clamp(4, 24));
+        let samples = spans.map(|n| (2 * n + 2).clamp(4, 40));
         let ruled = self.surface.is_ruled_along_v();
         let at = |s: f64, t: f64| self.jet([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
         let along = |n: usize, jet: &dyn Fn(f64, f64) -> Jet| {

@@ -5,8 +5,11 @@ use super::chart::{Chart, Uv};
 use super::edges::Fineness;
 use super::interior::Grid;
 use super::strip;
-use super::triangulate::{delaunay, ears, zip};
+use super::triangulate::{delaunay, doubled_area, ears, zip};
 use crate::geometry::{Point, Point2, polygon};
+
+/// Regions without a triangle larger than this share of the whole are left out.
+const EMPTY: f64 = 1e-9;
 
 /// A triangulated face: points in space and in parameter space side by side.
 #[derive(Default)]
@@ -25,6 +28,23 @@ impl Patch {
         self.points.push(chart.point(uv));
         self.uv.push(uv);
     }
+
+    /// Leaves out points that no triangle uses: grid nodes outside the face.
+    fn drop_unused(&mut self) {
+        const UNUSED: u32 = u32::MAX;
+        let mut places = vec![UNUSED; self.uv.len()];
+        let (mut points, mut uv) = (Vec::with_capacity(places.len()), Vec::with_capacity(places.len()));
+        for index in self.triangles.iter_mut().flatten() {
+            let place = &mut places[*index as usize];
+            if *place == UNUSED {
+                *place = uv.len() as u32;
+                points.push(self.points[*index as usize]);
+                uv.push(self.uv[*index as usize]);
+            }
+            *index = *place;
+        }
+        (self.points, self.uv) = (points, uv);
+    }
 }
 
 /// Triangulates the part of the surface that the paths bound. `None` where they bound nothing sensible.
@@ -40,13 +60,9 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     let steps = chart.steps(layout.rectangle, fineness);
     let flat = matches!(*chart.surface, crate::brep::Surface::Plane(_));
     let ruled = chart.surface.is_ruled_along_v();
-    let quick = if flat || steps == [1, 1] {
-        ears(&patch.uv, &layout.rings, layout.area)
-    } else if ruled && paths.len() == 1 {
-        layout.by_zip(&patch, steps)
-    } else {
-        None
-    };
+    let quick = if flat { None } else { layout.by_zip(&patch, steps) };
+    let flat_enough = flat || steps == [1, 1];
+    let quick = quick.or_else(|| if flat_enough { ears(&patch.uv, &layout.rings, layout.area) } else { None });
     if let Some(triangles) = quick {
         return Some(Patch { triangles, ..patch });
     }
@@ -132,32 +148,51 @@ impl Layout {
         self.rings.iter().copied().zip(ends).flat_map(ring).collect()
     }
 
-    /// Cuts the ring at its first and last u into two chains.
+    /// A single ring on a surface that one step suffices for in one direction, as a strip along the other.
     fn by_zip(&self, patch: &Patch, steps: [usize; 2]) -> Option<Vec<[u32; 3]>> {
-        let [u0, u1, ..] = self.rectangle;
-        let uv = &patch.uv;
-        let n = uv.len();
-        let near = 1e-7 * (u1 - u0);
-        let mut ring: Vec<u32> = (0..n as u32).collect();
-        if self.sides[self.order[0]] < 0.0 {
-            ring.reverse();
+        if self.rings.len() != 1 {
+            return None;
         }
-        let at_start = |&i: &u32| uv[i as usize][0] <= u0 + near;
-        // Counter-clockwise the last point on the left side is its lowest.
-        let first = (0..n).find(|&k| at_start(&ring[k]) && !at_start(&ring[(k + 1) % n]))?;
-        ring.rotate_left(first);
-        let right = ring.iter().position(|&i| uv[i as usize][0] >= u1 - near)?;
-        let lower: Vec<u32> = ring[..=right].to_vec();
-        let mut upper: Vec<u32> = ring[right..].iter().rev().copied().collect();
-        upper.insert(0, ring[0]);
-        // The upper chain starts on the left side and ends where the lower one ends.
+        let along = if steps[0] >= steps[1] { [0, 1] } else { [1, 0] };
+        along.into_iter().filter(|&axis| steps[1 - axis] == 1).find_map(|axis| self.zip_along(patch, axis, steps[axis]))
+    }
+
+    /// Cuts the ring at its first and last u (or v) into two chains.
+    fn zip_along(&self, patch: &Patch, axis: usize, steps: usize) -> Option<Vec<[u32; 3]>> {
+        let swapped: Vec<Uv>;
+        let uv = if axis == 0 {
+            &patch.uv
+        } else {
+            // Mirrored, not only swapped, so that it still runs the same way round.
+            swapped = patch.uv.iter().map(|p| [p[1], -p[0]]).collect();
+            &swapped
+        };
+        let [u0, u1] = [self.rectangle[2 * axis], self.rectangle[2 * axis + 1]];
+        let near = 1e-7 * (u1 - u0);
+        let (lower, upper) = chains(uv, self.sides[self.order[0]] < 0.0, [u0 + near, u1 - near])?;
         let rising = |chain: &[u32]| chain.windows(2).all(|w| uv[w[1] as usize][0] >= uv[w[0] as usize][0] - near);
         if !rising(&lower) || !rising(&upper) {
             return None;
         }
-        let widest = 1.7 * (u1 - u0) / steps[0] as f64 + near;
-        zip(uv, &lower, &upper, self.area, widest)
+        zip(uv, &lower, &upper, self.area, 1.7 * (u1 - u0) / steps as f64 + near)
     }
+}
+
+/// The lower and the upper chain of a ring, both from its first to its last u.
+fn chains(uv: &[Uv], clockwise: bool, [first, last]: [f64; 2]) -> Option<(Vec<u32>, Vec<u32>)> {
+    let n = uv.len();
+    let mut ring: Vec<u32> = (0..n as u32).collect();
+    if clockwise {
+        ring.reverse();
+    }
+    let at_start = |&i: &u32| uv[i as usize][0] <= first;
+    // Counter-clockwise the last point on the left side is its lowest.
+    let start = (0..n).find(|&k| at_start(&ring[k]) && !at_start(&ring[(k + 1) % n]))?;
+    ring.rotate_left(start);
+    let right = ring.iter().position(|&i| uv[i as usize][0] >= last)?;
+    let mut upper: Vec<u32> = ring[right..].iter().rev().copied().collect();
+    upper.insert(0, ring[0]);
+    Some((ring[..=right].to_vec(), upper))
 }
 
 /// Constrained Delaunay with grid points; the inside is where a ray crosses an odd number of segments.
@@ -193,22 +228,48 @@ pub(super) fn fill(
     scale: [f64; 2],
     inside: impl Fn(&Uv) -> bool,
 ) -> Option<Patch> {
-    let Some(origin) = patch.uv.first().copied() else { return None };
+    let origin = patch.uv.first().copied()?;
     let scaled: Vec<Uv> =
         patch.uv.iter().map(|p| [(p[0] - origin[0]) * scale[0], (p[1] - origin[1]) * scale[1]]).collect();
     let cut = delaunay(&scaled, segments)?;
     for p in &cut.added {
         patch.add(chart, [origin[0] + p[0] / scale[0], origin[1] + p[1] / scale[1]]);
     }
+    // Along a straight border rounding leaves slivers outside that no ray can tell from the inside.
+    let least = EMPTY * cut.triangles.iter().map(|t| doubled_area(&patch.uv, t)).sum::<f64>();
     let keep: Vec<bool> = cut
         .largest
         .iter()
         .map(|&t| {
-            let [a, b, c] = cut.triangles[t as usize].map(|i| patch.uv[i as usize]);
-            inside(&[(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0])
+            let corners = cut.triangles[t as usize];
+            let [a, b, c] = corners.map(|i| patch.uv[i as usize]);
+            doubled_area(&patch.uv, &corners) > least
+                && inside(&[(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0])
         })
         .collect();
     let kept = cut.triangles.iter().zip(&cut.regions).filter(|(_, r)| keep[**r as usize]);
     patch.triangles = kept.map(|(t, _)| *t).collect();
+    patch.drop_unused();
     (!patch.triangles.is_empty()).then_some(patch)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::{Placement, Surface};
+    use crate::geometry::Vector;
+
+    #[test]
+    fn slivers_along_a_straight_side_are_not_inside() {
+        let axes = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::y(), z: Vector::z() };
+        let surface = Surface::Plane(axes);
+        let chart = Chart::new(&surface, true, &[], 1.0);
+        let mut patch = Patch::default();
+        // The second point is pushed inwards by rounding: the hull's side passes below it.
+        let border = [[0.0, 0.0], [1.0, 1e-17], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
+        border.iter().for_each(|&uv| patch.add(&chart, uv));
+        let segments: Vec<[u32; 2]> = (0..5).map(|i| [i, (i + 1) % 5]).collect();
+        let patch = fill(&chart, patch, &segments, [1.0, 1.0], |_| true).unwrap();
+        assert_eq!(patch.triangles.len(), 3);
+    }
 }

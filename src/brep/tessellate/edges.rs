@@ -198,12 +198,11 @@ fn stops(curve: &Curve, [from, to]: [f64; 2], period: Option<f64>) -> Vec<f64> {
 /// Adds the end of the piece, after what is needed before it.
 fn halve(at: &impl Fn(f64) -> [Vector; 3], [a, b]: [f64; 2], fineness: &Fineness, depth: u32, out: &mut Vec<f64>) {
     let m = 0.5 * (a + b);
-    let ([p, d, _], [q, _, _], [r, e, _]) = (at(a), at(m), at(b));
-    let chord = r - p;
-    let off = match chord.try_normalize(f64::MIN_POSITIVE) {
-        Some(direction) => (q - p - direction * direction.dot(&(q - p))).norm(),
-        None => (q - p).norm(),
-    };
+    let ([p, d, _], [r, e, _]) = (at(a), at(b));
+    let direction = (r - p).try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
+    // The quarters as well: an S crosses its chord in the middle.
+    let off = [0.25, 0.5, 0.75].map(|s| at(a + s * (b - a))[0] - p).map(|q| (q - direction * direction.dot(&q)).norm());
+    let off = off.into_iter().fold(0.0, f64::max);
     let bent = off > 0.05 * fineness.deflection && d.cross(&e).norm().atan2(d.dot(&e)) > fineness.angle;
     if depth > 0 && (off > fineness.deflection || bent) {
         halve(at, [a, m], fineness, depth - 1, out);

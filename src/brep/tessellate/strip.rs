@@ -36,7 +36,7 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     strip.pieces.iter().for_each(|[a, b]| grid.block(a, b));
     (0..2).filter(|&axis| strip.cuts[axis].is_some()).for_each(|axis| grid.join_sides(axis));
     let mut patch = std::mem::take(&mut strip.patch);
-    grid.nodes(true).filter(|uv| !strip.on_open_end(chart, uv)).for_each(|uv| patch.add(chart, uv));
+    grid.nodes(true).filter(|uv| !strip.on_open_end(uv)).for_each(|uv| patch.add(chart, uv));
     patch.sides = paths.iter().map(|p| strip.side_of(p, chart)).collect();
     fill(chart, patch, &strip.segments, scale, |p| strip.inside(p))
 }
@@ -67,8 +67,8 @@ fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Opti
     let ends = |chain: &[u32]| [chain[0], chain[chain.len() - 1]].map(|i| patch.uv[i as usize]);
     let ([l0, l1], [h0, h1]) = (ends(&lower), ends(&upper));
     // The shoelace formula around both chains and the two cut lines between them.
-    let area = turns(&upper) - turns(&lower)
-        + 0.5 * ((l0[1] + h0[1]) * (l0[0] - h0[0]) + (h1[1] + l1[1]) * (h1[0] - l1[0])) * -1.0;
+    let area =
+        turns(&upper) - turns(&lower) - 0.5 * ((l0[1] + h0[1]) * (l0[0] - h0[0]) + (h1[1] + l1[1]) * (h1[0] - l1[0]));
     let rectangle = super::boundary::rectangle(patch.uv.iter());
     let steps = chart.steps([0.0, period, rectangle[2], rectangle[3]], fineness);
     let rising = |chain: &[u32]| chain.windows(2).all(|w| patch.uv[w[1] as usize][0] >= patch.uv[w[0] as usize][0]);
@@ -326,9 +326,9 @@ impl Strip {
         let d = [b[0] - a[0], b[1] - a[1]];
         let left = [-d[1] * scale[0] / scale[1], d[0] * scale[1] / scale[0]];
         let mut p = [0.5 * (a[0] + b[0]) + 1e-4 * left[0], 0.5 * (a[1] + b[1]) + 1e-4 * left[1]];
-        for axis in 0..2 {
+        for (axis, x) in p.iter_mut().enumerate() {
             if let Some(cut) = self.cuts[axis] {
-                p[axis] = cut + (p[axis] - cut).rem_euclid(self.periods[axis]);
+                *x = cut + (*x - cut).rem_euclid(self.periods[axis]);
             }
         }
         Some(p)
@@ -361,10 +361,9 @@ impl Strip {
     }
 
     /// Whether a grid node lies on an end of the strip that no pole closes: beyond the paths.
-    fn on_open_end(&self, chart: &Chart, uv: &Uv) -> bool {
+    fn on_open_end(&self, uv: &Uv) -> bool {
         let up = 1 - self.along;
         let high_inside = self.base != (self.turns % 2 != 0);
-        let _ = chart;
         let ends = super::boundary::rectangle(self.pieces.iter().flatten());
         self.cuts[up].is_none()
             && ((!self.base && uv[up] <= ends[2 * up]) || (!high_inside && uv[up] >= ends[2 * up + 1]))

@@ -1,7 +1,5 @@
 //! What a representation places: its bodies, those of related representations and those of mapped items.
 
-use std::rc::Rc;
-
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bodies::BodyKind;
@@ -10,14 +8,10 @@ use super::placement::Geometry;
 use super::records::{Fault, File, Read, Record};
 use super::structure::{Relation, Structure};
 use super::units::{Units, units_of_context};
-use crate::cancel::Cancel;
 use crate::geometry::Transform;
 
 /// How deep mapped items and products may be nested.
 pub(super) const DEEPEST_NESTING: usize = 64;
-
-/// Branches left out beyond this number are not told: one broken product may be used very often.
-const MOST_FAULTS: usize = 10_000;
 
 /// An item that makes a body, where it lies, and through which mapped items.
 #[derive(Clone, Debug)]
@@ -41,7 +35,7 @@ pub(super) struct Content {
 pub(super) struct Representations<'a> {
     pub file: File<'a>,
     pub structure: &'a Structure,
-    contents: FxHashMap<u64, Rc<Content>>,
+    contents: FxHashMap<u64, Content>,
     units: FxHashMap<u64, Units>,
     /// Representations that were placed.
     pub placed: FxHashSet<u64>,
@@ -49,7 +43,6 @@ pub(super) struct Representations<'a> {
     pub faults: Vec<(u64, Fault)>,
     /// Items that may still be placed.
     pub room: usize,
-    cancel: &'a Cancel,
 }
 
 /// Where an expansion is: the placement, the path and the representations that lead here.
@@ -61,25 +54,13 @@ struct Branch {
 }
 
 impl<'a> Representations<'a> {
-    pub fn new(file: File<'a>, structure: &'a Structure, room: usize, cancel: &'a Cancel) -> Self {
+    pub fn new(file: File<'a>, structure: &'a Structure, room: usize) -> Self {
         let (contents, units) = (FxHashMap::default(), FxHashMap::default());
-        Self { file, structure, contents, units, placed: FxHashSet::default(), faults: Vec::new(), room, cancel }
-    }
-
-    /// Notes that a branch at `entity` is left out.
-    pub fn note(&mut self, entity: u64, fault: Fault) {
-        if self.faults.len() < MOST_FAULTS {
-            self.faults.push((entity, fault));
-        }
-    }
-
-    /// Whether the work should stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancel.is_cancelled()
+        Self { file, structure, contents, units, placed: FxHashSet::default(), faults: Vec::new(), room }
     }
 
     /// The items and units of a representation.
-    pub fn content(&mut self, id: u64) -> Read<Rc<Content>> {
+    pub fn content(&mut self, id: u64) -> Read<Content> {
         if let Some(known) = self.contents.get(&id) {
             return Ok(known.clone());
         }
@@ -90,7 +71,7 @@ impl<'a> Representations<'a> {
             Some(context) => *self.units.entry(context).or_insert_with(|| units_of_context(&self.file, context)),
             None => Units::default(),
         };
-        let content = Rc::new(Content { items, units });
+        let content = Content { items, units };
         self.contents.insert(id, content.clone());
         Ok(content)
     }
@@ -110,9 +91,6 @@ impl<'a> Representations<'a> {
         let mut at = 0;
         while let Some(&(id, placement)) = queue.get(at) {
             at += 1;
-            if self.cancel.is_cancelled() {
-                return;
-            }
             if !seen.insert(id) {
                 continue;
             }
@@ -120,7 +98,7 @@ impl<'a> Representations<'a> {
             self.follow_relations(id, &placement, &mut queue);
             let here = Branch { placement, path: branch.path.clone(), above: [&branch.above[..], &[id]].concat() };
             if let Err(fault) = self.expand_items(id, &here, &mut items, found) {
-                self.note(id, fault);
+                self.faults.push((id, fault));
             }
         }
     }
@@ -135,12 +113,12 @@ impl<'a> Representations<'a> {
         let content = self.content(id)?;
         for &item in &content.items {
             let Ok(record) = self.file.record(item) else {
-                self.note(id, Fault::new(item, "there is no such item"));
+                self.faults.push((id, Fault::new(item, "there is no such item")));
                 continue;
             };
             if record.is(Kind::MappedItem) {
                 if let Err(fault) = self.expand_mapped(&record, &content, branch, found) {
-                    self.note(item, fault);
+                    self.faults.push((item, fault));
                 }
             } else if let Some(kind) = BodyKind::of(&record).filter(|_| seen.insert(item)) {
                 self.room = self.room.checked_sub(1).ok_or_else(|| Fault::new(id, "too many bodies are placed"))?;
@@ -190,7 +168,7 @@ impl<'a> Representations<'a> {
             let other = if relation.first == id { relation.second } else { relation.first };
             match self.transform(relation, other) {
                 Ok(transform) => queue.push((other, placement.after(&transform))),
-                Err(fault) => self.note(other, fault),
+                Err(fault) => self.faults.push((other, fault)),
             }
         }
     }

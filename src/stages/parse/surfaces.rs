@@ -25,6 +25,7 @@ const SWEPT: &[Kind] =
 impl Geometry<'_> {
     /// Any surface.
     pub fn surface(&self, id: u64) -> Read<Surface> {
+        self.refill();
         self.nested_surface(id, 0)
     }
 
@@ -32,7 +33,7 @@ impl Geometry<'_> {
         if depth > DEEPEST_SURFACE {
             return Err(Fault::new(id, "surfaces nested too deep"));
         }
-        self.spend(id, 1)?;
+        self.spend(id)?;
         let record = self.file.record(id)?;
         for kind in record.kinds() {
             if let Some(surface) = self.surface_of_kind(&record, kind, depth)? {
