@@ -113,7 +113,12 @@ impl Builder {
             triangles: start..start + n,
             area,
             centroid: Point::from(moment / area),
-            flux: 0.0,
+            flux: (start as usize..self.mesh.triangles.len())
+                .map(|t| {
+                    let [p, q, r] = self.mesh.corners(t);
+                    p.coords.cross(&q.coords).dot(&r.coords) / 6.0
+                })
+                .sum(),
         });
     }
 
@@ -126,8 +131,9 @@ impl Builder {
         let moment: Vector = self.mesh.faces.iter().map(|f| f.centroid.coords * f.area).sum();
         let centroid = Point::from(moment / area);
         let reach = self.mesh.points.iter().map(|p| (p - centroid).norm()).fold(0.0, f64::max);
+        let volume = self.mesh.faces.iter().map(|f| f.flux).sum();
         let bounds = Aabb::of(&self.mesh.points);
-        let measures = Measures { area, volume: 0.0, centroid, bounds, tolerance: Tolerance::of(2.0 * reach) };
+        let measures = Measures { area, volume, centroid, bounds, tolerance: Tolerance::of(2.0 * reach) };
         Parsed { model: self.model, mesh: self.mesh, measures, skipped: Vec::new(), warnings: Vec::new() }
     }
 }

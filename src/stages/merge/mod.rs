@@ -241,6 +241,8 @@ impl Merger<'_> {
                 plane.coverage = self.validated.field.support(&plane.plane.reflection(), round, self.cancel)?;
             }
         }
+        // Faces speak for the other sources; across a principal axis a small share fits by accident.
+        pool.retain(|p| p.source != Source::Principal || p.coverage >= self.options.near_global);
         self.keep_near_best(pool, 0.0);
         Ok(())
     }

@@ -26,8 +26,10 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
         if pool.iter().chain(&found).any(|p| known(&p)) {
             continue;
         }
-        let Some((plane, residual)) = polish(field, plane, merger, size) else { continue };
-        if let Some(coverage) = field.reaches(&plane.reflection(), (best - 0.15).max(0.05)) {
+        // Without faces that speak for it, a plane that misses much of the surface is an accident.
+        let needed = merger.options.near_global - 0.05;
+        let Some((plane, residual)) = polish(field, plane, merger, size, needed) else { continue };
+        if let Some(coverage) = field.reaches(&plane.reflection(), needed) {
             found.push(candidate(plane, coverage, residual));
         }
     }
@@ -55,7 +57,13 @@ fn axes(merger: &Merger, field: &SurfaceField) -> Vec<Vector> {
         points += d * d.transpose();
         normals += sample.normal * sample.normal.transpose();
     }
-    [points, normals].iter().flat_map(distinct_axes).collect()
+    let mut axes: Vec<Vector> = Vec::new();
+    for axis in [points, normals].iter().flat_map(distinct_axes) {
+        if axes.iter().all(|known| known.cross(&axis).norm() > KNOWN.0) {
+            axes.push(axis);
+        }
+    }
+    axes
 }
 
 /// Eigenvectors whose eigenvalues stand alone.
@@ -67,15 +75,21 @@ fn distinct_axes(matrix: &Matrix) -> Vec<Vector> {
 }
 
 /// Point-to-surface ICP of the mirrored samples over the plane's three degrees of freedom. Returns the plane and the
-/// root mean square distance; `None` where too little of the surface is met.
-pub(super) fn polish(field: &SurfaceField, start: Plane, merger: &Merger, size: f64) -> Option<(Plane, f64)> {
-    let mut plane = start;
-    let mut residual = 0.0;
+/// root mean square distance; `None` as soon as less of the surface is met than `needed`, for the radii shrink.
+pub(super) fn polish(
+    field: &SurfaceField,
+    start: Plane,
+    merger: &Merger,
+    size: f64,
+    needed: f64,
+) -> Option<(Plane, f64)> {
+    let (mut plane, mut residual) = (start, 0.0);
     for (i, radius) in RADII.iter().enumerate() {
         let round = if i + 3 < RADII.len() { Round::Coarse } else { Round::Middle };
         let step = Step::of(field, &plane, merger, round, radius * size);
-        // Less than a tenth of the surface cannot become a symmetry of the model.
-        if step.met * 10 < field.samples(round).len() {
+        // Half of it at first: the start may be off.
+        let least = if i < 2 { 0.5 * needed } else { needed };
+        if (step.met as f64) < least * field.samples(round).len() as f64 || step.met == 0 {
             return None;
         }
         residual = (step.squared / step.met as f64).sqrt();

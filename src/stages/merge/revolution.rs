@@ -21,8 +21,10 @@ pub(super) fn axes(merger: &Merger) -> Result<Vec<Axis>, Cancelled> {
     if error > 0.05 {
         return Ok(Vec::new());
     }
-    for axis in [of_faces(merger, &fitted), polished(merger, &fitted)].into_iter().flatten() {
-        if turns(merger, &axis)? {
+    for candidate in [of_faces, polished] {
+        if let Some(axis) = candidate(merger, &fitted)
+            && turns(merger, &axis)?
+        {
             return Ok(vec![axis]);
         }
     }
@@ -46,7 +48,7 @@ fn of_faces(merger: &Merger, fitted: &Axis) -> Option<Axis> {
 fn polished(merger: &Merger, fitted: &Axis) -> Option<Axis> {
     let size = merger.parsed.measures.tolerance.size();
     let first = any_perpendicular(&fitted.direction);
-    let plane = |n: &Vector| polish(&merger.validated.field, Plane::through(&fitted.point, n), merger, size);
+    let plane = |n: &Vector| polish(&merger.validated.field, Plane::through(&fitted.point, n), merger, size, 0.9);
     let (p, q) = (plane(&first)?.0, plane(&fitted.direction.cross(&first))?.0);
     let direction = p.normal.cross(&q.normal).try_normalize(0.1)?;
     let centroid = merger.parsed.measures.centroid;

@@ -54,7 +54,7 @@ impl SurfaceField {
         let upto = |r: usize| order.partition_point(|&i| round(i) <= r);
         let rounds = [upto(0), upto(1), upto(2)];
         let samples = order.iter().map(|&i| samples[i]).collect();
-        let oriented = parsed.model.bodies.iter().all(|b| b.solid);
+        let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
         Self { tree, samples, rounds, radius: parsed.measures.tolerance.length(share), cosine, oriented }
     }
 
@@ -121,6 +121,19 @@ impl SurfaceField {
         let share = hits as f64 / samples.len().max(1) as f64;
         (share >= needed || samples.is_empty()).then_some(share)
     }
+}
+
+/// Whether the triangles enclose the volume of the solids: where faces are turned inside out they do not, and normals
+/// say nothing about sides.
+fn encloses_volume(parsed: &Parsed) -> bool {
+    let (mesh, measures) = (&parsed.mesh, &parsed.measures);
+    let cone = |t: usize| {
+        let [a, b, c] = mesh.corners(t).map(|p| p - measures.centroid);
+        a.cross(&b).dot(&c) / 6.0
+    };
+    let meshed: f64 = (0..mesh.triangles.len()).map(cone).sum();
+    // Chords cost a few percent of thin round bodies.
+    (meshed - measures.volume).abs() <= 0.1 * measures.volume
 }
 
 /// A number near 0.618 n without a common factor with `n`.
