@@ -11,7 +11,7 @@ use toml::{Table, Value};
 
 use crate::alignment::Method;
 use crate::error::{Result, RunError};
-use crate::stages::Stage;
+use crate::stages::{Stage, corner_filter, descriptor, isometry, merge, pair_match, parse, projection_sweep, validate};
 
 /// Which set of defaults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,6 +76,14 @@ pub struct Settings {
     /// Models that may wait before each stage; a stage that is not named lets 2 wait.
     pub queues: BTreeMap<Stage, usize>,
     pub limits: Limits,
+    pub parse: parse::Options,
+    pub corner_filter: corner_filter::Options,
+    pub pair_match: pair_match::Options,
+    pub isometry: isometry::Options,
+    pub validate: validate::Options,
+    pub merge: merge::Options,
+    pub projection_sweep: projection_sweep::Options,
+    pub descriptor: descriptor::Options,
 }
 
 impl Default for Settings {
@@ -87,9 +95,28 @@ impl Default for Settings {
 /// Keys that results do not depend on.
 const INDIFFERENT: [&str; 8] = ["input", "store", "labels", "report", "jobs", "workers", "queues", "limits"];
 
+/// The key of the program's version among the settings of a store.
+const VERSION: &str = "version";
+
 impl Settings {
     /// The defaults of a profile.
     pub fn profile(profile: Profile) -> Self {
+        match profile {
+            Profile::Default => Self::with_stages(profile),
+            Profile::Paper => Self {
+                corner_filter: corner_filter::Options::paper(),
+                pair_match: pair_match::Options::paper(),
+                isometry: isometry::Options::paper(),
+                validate: validate::Options::paper(),
+                merge: merge::Options::paper(),
+                projection_sweep: projection_sweep::Options::paper(),
+                ..Self::with_stages(profile)
+            },
+        }
+    }
+
+    /// The default profile's settings under the name of `profile`.
+    fn with_stages(profile: Profile) -> Self {
         Self {
             profile,
             input: Vec::new(),
@@ -102,23 +129,42 @@ impl Settings {
             workers: BTreeMap::new(),
             queues: BTreeMap::new(),
             limits: Limits::default(),
+            parse: parse::Options::default(),
+            corner_filter: corner_filter::Options::default(),
+            pair_match: pair_match::Options::default(),
+            isometry: isometry::Options::default(),
+            validate: validate::Options::default(),
+            merge: merge::Options::default(),
+            projection_sweep: projection_sweep::Options::default(),
+            descriptor: descriptor::Options::default(),
         }
     }
 
-    /// Reads a settings file.
+    /// Reads a settings file; `profile` goes before the profile that the file names.
     ///
     /// Errors: the file cannot be read, is not TOML, has an unknown key, or a value out of its range.
-    pub fn load(path: &Path) -> Result<Self> {
+    pub fn load(path: &Path, profile: Option<Profile>) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|e| RunError::file(path, e))?;
-        Self::parse(&text).map_err(|why| RunError::Settings(format!("{}: {why}", path.display())))
+        Self::parse(&text, profile).map_err(|why| RunError::Settings(format!("{}: {why}", path.display())))
     }
 
-    /// Reads settings from TOML text.
-    pub fn parse(text: &str) -> std::result::Result<Self, String> {
+    /// Reads the settings that a store holds: see [`Settings::effective`].
+    pub fn of_store(text: &str) -> Result<Self> {
+        let settings = || {
+            let mut table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
+            table.remove(VERSION);
+            Self::parse(&table.to_string(), None)
+        };
+        settings().map_err(|why| RunError::Settings(format!("of the store: {why}")))
+    }
+
+    /// Reads settings from TOML text; `profile` goes before the profile that the text names.
+    pub fn parse(text: &str, profile: Option<Profile>) -> std::result::Result<Self, String> {
         // Read twice: only the text knows lines and columns, only the table knows which keys were written.
         let written: Self = toml::from_str(text).map_err(|e| e.to_string())?;
-        let table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
-        let mut all = table_of(&Self::profile(written.profile))?;
+        let mut table: Table = text.parse().map_err(|e: toml::de::Error| e.to_string())?;
+        table.remove("profile");
+        let mut all = table_of(&Self::profile(profile.unwrap_or(written.profile)))?;
         overlay(&mut all, table);
         let settings: Self = all.try_into().map_err(|e: toml::de::Error| e.to_string())?;
         settings.check()?;
@@ -156,7 +202,7 @@ impl Settings {
     pub fn effective(&self) -> Result<String> {
         let mut table = table_of(self).map_err(RunError::Settings)?;
         table.retain(|key, _| !INDIFFERENT.contains(&key));
-        table.insert("version".into(), env!("CARGO_PKG_VERSION").into());
+        table.insert(VERSION.into(), env!("CARGO_PKG_VERSION").into());
         toml::to_string(&table).map_err(|e| RunError::Settings(e.to_string()))
     }
 
@@ -227,11 +273,27 @@ mod tests {
     #[test]
     fn the_file_lies_over_the_profile() {
         let text = "profile = \"paper\"\ninput = \"models\"\n[limits]\nseconds = 5\n[workers]\nparse = 3";
-        let settings = Settings::parse(text).unwrap();
+        let settings = Settings::parse(text, None).unwrap();
         assert_eq!(settings.input, [PathBuf::from("models")]);
         assert_eq!((settings.limits.seconds, settings.limits.bytes), (5.0, Limits::default().bytes));
         assert_eq!((settings.workers_of(Stage::Parse), settings.queue_of(Stage::Merge)), (3, 2));
-        assert_eq!(Settings::parse("").unwrap(), Settings::default());
+        assert_eq!(Settings::parse("", None).unwrap(), Settings::default());
+    }
+
+    #[test]
+    fn the_settings_file_tells_every_default() {
+        let text = include_str!("../pipeline.toml");
+        let shipped = Settings::parse(text, None).unwrap();
+        assert_eq!(shipped.effective().unwrap(), Settings::default().effective().unwrap());
+        let bare = |line: &str| line.strip_prefix("# ").filter(|rest| rest.contains(" = ")).unwrap_or(line).to_owned();
+        let of_stages = text.split_once("[parse]").unwrap().1.lines().map(|line| bare(line) + "\n");
+        let told: Table = format!("[parse]\n{}", of_stages.collect::<String>()).parse().unwrap();
+        let all = table_of(&Settings::default()).unwrap();
+        for stage in Stage::ALL.map(Stage::name) {
+            assert_eq!(told.get(stage), all.get(stage), "[{stage}]");
+        }
+        let written: Table = text.parse().unwrap();
+        assert_eq!(written["limits"], all["limits"]);
     }
 
     #[test]
@@ -251,7 +313,7 @@ mod tests {
             ("jobs = ", "1"),
         ];
         for (text, named) in cases {
-            let error = Settings::parse(text).unwrap_err();
+            let error = Settings::parse(text, None).unwrap_err();
             assert!(error.contains(named), "{text}: {error}");
         }
     }
@@ -261,15 +323,15 @@ mod tests {
         let base = Settings::default().effective().unwrap();
         let same =
             "input = \"x\"\njobs = 3\nstore = \"y\"\nlabels = \"z\"\n[workers]\nparse = 2\n[limits]\nseconds = 1";
-        assert_eq!(Settings::parse(same).unwrap().effective().unwrap(), base);
-        let other = Settings::parse("random_pose = 1").unwrap().effective().unwrap();
+        assert_eq!(Settings::parse(same, None).unwrap().effective().unwrap(), base);
+        let other = Settings::parse("random_pose = 1", None).unwrap().effective().unwrap();
         assert_eq!(crate::store::differences(&base, &other), ["random_pose: not set, 1"]);
     }
 
     #[test]
     fn the_effective_settings_can_be_read_again() {
-        let mut text = Settings::profile(Profile::Paper).effective().unwrap();
-        text = text.lines().filter(|line| !line.starts_with("version")).map(|line| format!("{line}\n")).collect();
-        assert_eq!(Settings::parse(&text).unwrap(), Settings::profile(Profile::Paper));
+        let paper = Settings::profile(Profile::Paper);
+        assert_eq!(Settings::of_store(&paper.effective().unwrap()).unwrap(), paper);
+        assert_eq!(Settings::parse("profile = \"default\"", Some(Profile::Paper)).unwrap(), paper);
     }
 }
