@@ -57,22 +57,20 @@ pub fn visit(inputs: &[PathBuf], limits: &Limits, each: &mut Each) -> Result<()>
     Ok(())
 }
 
-/// Models in `inputs` as far as they can be counted without reading archives, and their bytes on disk; the last says
-/// whether that is all of them.
-pub fn count(inputs: &[PathBuf]) -> (usize, u64, bool) {
-    let (mut models, mut bytes, mut all) = (0, 0, true);
+/// Models in `inputs` as far as they can be counted without reading archives, and whether that is all of them.
+pub fn count(inputs: &[PathBuf]) -> (usize, bool) {
+    let (mut models, mut all) = (0, true);
     for input in inputs {
         all &= input.as_os_str() != "-";
         for entry in walkdir::WalkDir::new(input).follow_links(true).into_iter().flatten() {
-            let size = entry.metadata().map_or(0, |meta| meta.len());
             match kind_of(&entry.file_name().to_string_lossy()) {
-                Some(Kind::Model(_)) if entry.file_type().is_file() => (models, bytes) = (models + 1, bytes + size),
+                Some(Kind::Model(_)) if entry.file_type().is_file() => models += 1,
                 Some(_) if entry.file_type().is_file() => all = false,
                 _ => {}
             }
         }
     }
-    (models, bytes, all)
+    (models, all)
 }
 
 /// A visit of one input.

@@ -71,7 +71,8 @@ fn a_folder_is_visited_in_the_order_of_names() {
     std::fs::write(dir.path().join("f.stpZ"), zip_of(&[("f.stp", "6")])).unwrap();
     let expected = [("a.stp", "2"), ("b/x.step", "1"), ("c.P21", "3"), ("e.stpZ", "5"), ("f.stpZ", "6")];
     assert_eq!(all(&[dir.path().to_owned()]), pairs(&expected));
-    assert_eq!(count(&[dir.path().to_owned()]).0, 5);
+    assert_eq!(count(&[dir.path().to_owned()]), (5, true));
+    assert_eq!(count(&[dir.path().join("a.stp"), "-".into()]), (1, false));
 }
 
 #[test]

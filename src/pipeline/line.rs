@@ -37,6 +37,11 @@ impl<'scope, 'env, T: Send + 'scope> Line<'scope, 'env, T> {
         (feed, Self { scope, bench, settings, end, queues: Vec::new() })
     }
 
+    /// The settings of the run.
+    pub fn settings(&self) -> &'scope Settings {
+        self.settings
+    }
+
     /// The same line with the workers of one more stage.
     ///
     /// Errors: the system has no more threads.

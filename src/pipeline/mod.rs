@@ -9,12 +9,24 @@ mod parcel;
 mod plan;
 mod progress;
 mod random_pose;
+mod record;
 mod resume;
 mod run;
+mod steps;
 mod worker;
 
 pub use feed::Shard;
+pub use guard::helpers;
+pub use log::by_stage;
+pub use parcel::Seconds;
+pub use plan::describe;
 pub use progress::Progress;
 pub use random_pose::random_pose;
+pub use record::{Counts, bbox, point, record, vector};
 use run::Counters;
+use run::TICK;
 pub use run::{Report, Request, run};
+pub use steps::{Described, Framed, Posed, Ranked};
+
+#[cfg(test)]
+mod tests;

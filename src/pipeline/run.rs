@@ -1,6 +1,7 @@
 //! A run: everything from the inputs to the published store.
 
 use std::collections::{BTreeMap, HashSet};
+use std::io;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -25,7 +26,7 @@ use crate::store::{Contents, Failure, Hash, ModelRecord, publish};
 const GROUP: usize = 64;
 const GROUP_TIME: Duration = Duration::from_secs(1);
 /// Time between two looks at deadlines and progress.
-const TICK: Duration = Duration::from_millis(50);
+pub const TICK: Duration = Duration::from_millis(50);
 /// Models listed as slowest.
 const SLOWEST: usize = 10;
 
@@ -71,10 +72,18 @@ pub struct Counters {
     pub bytes: AtomicU64,
 }
 
-/// Reads the inputs of `request`, sends the models down the line that `build` makes, keeps the outcomes and publishes.
+/// Makes the line of workers that a run sends its models down.
+pub type Build<'b> = dyn for<'s, 'e> Fn(Line<'s, 'e, Vec<u8>>) -> io::Result<Line<'s, 'e, ModelRecord>> + 'b;
+
+/// Reads the inputs of `request`, sends the models through the eight stages, keeps the outcomes and publishes.
 ///
 /// Errors: see [`crate::error`]; what is done stays in the journal.
-pub fn run(request: &Request, progress: &mut Progress, build: &super::plan::Build) -> Result<Report> {
+pub fn run(request: &Request, progress: &mut Progress) -> Result<Report> {
+    run_with(request, progress, &|line| super::plan::stages(line))
+}
+
+/// [`run`] with other workers, for tests.
+pub fn run_with(request: &Request, progress: &mut Progress, build: &Build) -> Result<Report> {
     let started = Instant::now();
     let settings = request.settings;
     let effective = settings.effective()?;
@@ -93,12 +102,7 @@ pub fn run(request: &Request, progress: &mut Progress, build: &super::plan::Buil
 }
 
 /// Sets up all threads, and collects on this one until the last parcel has come out.
-fn stream(
-    request: &Request,
-    progress: &mut Progress,
-    build: &super::plan::Build,
-    collector: &mut Collector,
-) -> Result<Manifest> {
+fn stream(request: &Request, progress: &mut Progress, build: &Build, collector: &mut Collector) -> Result<Manifest> {
     let settings = request.settings;
     let bench = Bench::new(settings.busy_limit(), Duration::from_secs_f64(settings.limits.seconds));
     let budget = Budget::new(settings.limits.memory_mb);
@@ -110,7 +114,7 @@ fn stream(
         let (results, queues) = build(line).map_err(no_threads)?.finish();
         let (finished, watching) = bounded::<()>(0);
         let (bench, budget, counters) = (&bench, &budget, &counters);
-        scope.spawn(move || watch(&watching, progress, bench, counters, settings, &queues));
+        scope.spawn(move || watch(&watching, progress, bench, counters, request, &queues));
         let (shard, stop) = (request.shard, request.stop);
         let feed = Feed { settings, shard, known, budget, bench, counters, stop };
         let feeder = scope.spawn(move || feed.run(&outbox));
@@ -127,12 +131,12 @@ fn watch(
     progress: &mut Progress,
     bench: &Bench,
     counters: &Counters,
-    settings: &Settings,
+    request: &Request,
     queues: &[super::line::Queue],
 ) {
     let started = Instant::now();
-    let (models, _, all) = crate::archive::count(&settings.input);
-    let total = all.then_some(models as u64);
+    let (models, all) = crate::archive::count(&request.settings.input);
+    let total = (all && request.shard.is_none()).then_some(models as u64);
     while over.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
         bench.check_deadlines();
         let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
