@@ -8,6 +8,7 @@ pub mod distance;
 pub mod error;
 pub mod evaluate;
 pub mod geometry;
+pub mod inspect;
 pub mod pipeline;
 pub mod render;
 pub mod search;

@@ -1,0 +1,72 @@
+//! Everything that is known of one model, for people and for programs.
+
+pub mod json;
+pub mod text;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use crate::archive::{self, Limits};
+use crate::error::Result;
+use crate::pipeline::{Described, Seconds, describe};
+use crate::settings::Settings;
+use crate::stages::{ModelError, Stage};
+
+/// A model that went through all stages, or why it did not.
+pub struct Inspection {
+    /// The model as the user named it; for the members of an archive its id in it.
+    pub model: String,
+    pub result: std::result::Result<Described, ModelError>,
+    /// By stage.
+    pub seconds: Seconds,
+}
+
+/// Runs all stages on the model at `path`, or on each model of the archive or folder there, and hands them to `each`.
+///
+/// `archive.zip!folder/part.step` names a single member.
+///
+/// Errors: there is no such file.
+pub fn inspect(path: &Path, settings: &Settings, each: &mut dyn FnMut(Inspection) -> Result<()>) -> Result<()> {
+    let (file, member) = split(path);
+    let limits = Limits { bytes: settings.limits.bytes, expansion: settings.limits.expansion };
+    let mut state = Ok(());
+    archive::visit(std::slice::from_ref(&file), &limits, &mut |found| {
+        if member.as_ref().is_some_and(|member| !found.id.ends_with(member)) {
+            return ControlFlow::Continue(());
+        }
+        let model = name(path, &file, &found.id, member.is_some());
+        let (result, seconds) = match found.bytes {
+            Ok(bytes) => describe(&model, bytes, settings),
+            Err(why) => (Err(ModelError::new(Stage::Parse, why)), Seconds::default()),
+        };
+        state = each(Inspection { model, result, seconds });
+        if state.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    })?;
+    state
+}
+
+/// A single file keeps the name that the user gave it.
+fn name(path: &Path, file: &Path, id: &str, single: bool) -> String {
+    let plain = file.file_name().is_some_and(|name| name.to_string_lossy() == id);
+    if plain || single { path.display().to_string() } else { id.to_owned() }
+}
+
+/// The archive and the member's `!name`, unless there is a file of the whole name.
+fn split(path: &Path) -> (PathBuf, Option<String>) {
+    let text = path.to_string_lossy();
+    match text.split_once('!') {
+        Some((file, member)) if !path.exists() => (file.into(), Some(format!("!{member}"))),
+        _ => (path.to_owned(), None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_member_of_an_archive_is_named_after_an_exclamation_mark() {
+        assert_eq!(split(Path::new("a.zip!b/c.step")), ("a.zip".into(), Some("!b/c.step".into())));
+        assert_eq!(split(Path::new("c.step")), ("c.step".into(), None));
+    }
+}
