@@ -1,1 +1,26 @@
-fn main() {}
+//! Arguments -> settings -> call -> exit code.
+
+mod cli;
+mod commands;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use cli::{Cli, Command, Exit};
+
+fn main() -> ExitCode {
+    let ended = match Cli::parse().command {
+        Command::Run(args) => commands::run::run(&args),
+        Command::Eval(args) => commands::eval::eval(&args),
+        Command::Query(args) => commands::query::query(&args),
+        Command::Inspect(args) => commands::inspect::inspect(&args),
+        Command::Store(args) => commands::store::store(&args),
+        Command::Completions { shell } => commands::completions(shell),
+    };
+    let exit = ended.unwrap_or_else(|error| {
+        eprintln!("symalign: {error}");
+        Exit::CannotRun
+    });
+    ExitCode::from(exit.code())
+}

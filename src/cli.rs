@@ -1,0 +1,262 @@
+//! The command line: names and meanings of arguments, and the exit codes.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use symalign::alignment::Method;
+use symalign::pipeline::Shard;
+use symalign::search::Name;
+use symalign::settings::Profile;
+
+/// Finds the mirror symmetries of CAD models, aligns them, describes them by silhouettes and scores retrieval.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Read models and keep their descriptors in a store; with labels, score retrieval
+    Run(Run),
+    /// Score retrieval over a store and write the report
+    Eval(Eval),
+    /// Find the models of a store that are most like a model
+    Query(Query),
+    /// Tell what a model is, its symmetries, frames and descriptors
+    Inspect(Inspect),
+    /// Look at stores, check, export and join them
+    #[command(subcommand)]
+    Store(Store),
+    /// Print the completions for a shell
+    Completions { shell: clap_complete::Shell },
+}
+
+#[derive(Debug, Args)]
+pub struct Run {
+    /// Files, folders, archives (.zip .tar .tar.gz .tar.xz .tar.zst .7z), or - for a tar stream on standard input
+    pub input: Vec<PathBuf>,
+    /// Settings file [default: pipeline.toml, if it is there]
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Folder of the store
+    #[arg(long, value_name = "DIR")]
+    pub store: Option<PathBuf>,
+    /// Models computed at the same time [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub jobs: Option<u16>,
+    /// Take only the K-th of N parts of the inputs
+    #[arg(long, value_name = "K/N")]
+    pub shard: Option<Shard>,
+    /// Start over; removes what the store holds
+    #[arg(long)]
+    pub fresh: bool,
+    /// Compute again what failed in an earlier run
+    #[arg(long)]
+    pub retry_failed: bool,
+    /// Exit with 1 if a model failed
+    #[arg(long)]
+    pub strict: bool,
+    /// Frames to compute
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = method)]
+    pub method: Option<Vec<Method>>,
+    /// Give every model a random rigid motion after reading, fixed by this seed
+    #[arg(long, value_name = "SEED", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    pub random_pose: Option<u64>,
+    /// Set of defaults that the settings file lies over
+    #[arg(long, value_name = "NAME", value_parser = profile)]
+    pub profile: Option<Profile>,
+    /// Categories: a CSV file, or `parent-folder` [default: labels.csv in the input folder, if it is there]
+    #[arg(long, value_name = "FILE")]
+    pub labels: Option<PathBuf>,
+    /// Folder that the report is written to
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Eval {
+    /// Folder of the store
+    #[arg(long, value_name = "DIR", default_value = "store")]
+    pub store: PathBuf,
+    /// Categories: a CSV file, or `parent-folder`
+    #[arg(long, value_name = "FILE", default_value = "parent-folder")]
+    pub labels: PathBuf,
+    /// Folder that the report is written to
+    #[arg(long, value_name = "DIR", default_value = "report")]
+    pub out: PathBuf,
+    /// Methods to score, such as cpca or cpca:phase [default: all in the store]
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub method: Option<Vec<Name>>,
+    /// Average as another evaluator does
+    #[arg(long, value_enum)]
+    pub compat: Option<Compat>,
+}
+
+/// Whose averages to follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Compat {
+    /// The Princeton Shape Benchmark's: classes of one or two models are left out.
+    Psb,
+}
+
+#[derive(Debug, Args)]
+pub struct Query {
+    /// The model to look for
+    pub model: PathBuf,
+    /// Folder of the store
+    #[arg(long, value_name = "DIR", default_value = "store")]
+    pub store: PathBuf,
+    /// Number of hits
+    #[arg(short, default_value_t = 10)]
+    pub k: usize,
+    /// Method to compare by, such as cpca or cpca:phase [default: the magnitudes of the store's first frame]
+    #[arg(long, value_name = "M")]
+    pub method: Option<Name>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write a page with the pictures of the hits
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Inspect {
+    /// Models; `archive.zip!folder/part.step` names a member of an archive
+    #[arg(required = true)]
+    pub model: Vec<PathBuf>,
+    /// Print one JSON object a line
+    #[arg(long)]
+    pub json: bool,
+    /// Write pictures into this folder
+    #[arg(long, value_name = "DIR")]
+    pub render: Option<PathBuf>,
+    /// Settings file [default: pipeline.toml, if it is there]
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// Frames to compute
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = method)]
+    pub method: Option<Vec<Method>>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Store {
+    /// Tell what a store holds and where its sections lie
+    Info {
+        #[arg(default_value = "store")]
+        store: PathBuf,
+        /// Print JSON with dtype, shape and offset of each section, for numpy.memmap
+        #[arg(long)]
+        json: bool,
+    },
+    /// List the models, one a line
+    List {
+        #[arg(default_value = "store")]
+        store: PathBuf,
+        /// List the failures with their reasons instead
+        #[arg(long)]
+        failures: bool,
+    },
+    /// Check every byte
+    Verify {
+        #[arg(default_value = "store")]
+        store: PathBuf,
+    },
+    /// Write the store for other tools
+    Export {
+        #[arg(default_value = "store")]
+        store: PathBuf,
+        #[arg(long, value_enum, default_value_t = Format::Npy)]
+        format: Format,
+        /// Folder to write to
+        #[arg(long, value_name = "DIR", default_value = "export")]
+        out: PathBuf,
+    },
+    /// Join the stores of shards
+    Merge {
+        #[arg(required = true)]
+        store: Vec<PathBuf>,
+        /// Folder of the new store
+        #[arg(long, value_name = "DIR")]
+        into: PathBuf,
+    },
+}
+
+/// What `store export` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// NumPy arrays and a list of ids.
+    Npy,
+    /// Comma-separated text.
+    Csv,
+}
+
+/// How the program ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// All was done; failed models are counted, not fatal.
+    Done,
+    /// A model failed and `--strict` was given, or `inspect` could not read one.
+    ModelFailed,
+    /// Bad usage, bad settings, disk full, damaged store.
+    CannotRun,
+    /// Stopped by Ctrl-C or SIGTERM; what is done is kept.
+    Interrupted,
+}
+
+impl Exit {
+    /// The process's exit code.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::ModelFailed => 1,
+            Self::CannotRun => 2,
+            Self::Interrupted => 130,
+        }
+    }
+}
+
+fn method(name: &str) -> Result<Method, String> {
+    let known = || Method::ALL.map(Method::name).join(", ");
+    Method::ALL.into_iter().find(|m| m.name() == name).ok_or_else(|| format!("the methods are {}", known()))
+}
+
+fn profile(name: &str) -> Result<Profile, String> {
+    match name {
+        "default" => Ok(Profile::Default),
+        "paper" => Ok(Profile::Paper),
+        _ => Err("the profiles are default and paper".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_arguments_do_not_contradict_each_other() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn exit_codes_are_those_of_the_contract() {
+        let codes = [Exit::Done, Exit::ModelFailed, Exit::CannotRun, Exit::Interrupted].map(Exit::code);
+        assert_eq!(codes, [0, 1, 2, 130]);
+    }
+
+    #[test]
+    fn lists_and_shards_are_read() {
+        let line =
+            ["symalign", "run", "a", "b.zip", "--method", "symmetry,cpca", "--shard", "2/8", "--random-pose", "1"];
+        let Command::Run(run) = Cli::try_parse_from(line).unwrap().command else { panic!("not a run") };
+        assert_eq!(run.method, Some(vec![Method::Symmetry, Method::Cpca]));
+        assert_eq!((run.shard, run.random_pose), (Some(Shard { index: 2, count: 8 }), Some(1)));
+        for bad in [["--method", "best"], ["--shard", "3/2"], ["--jobs", "0"], ["--random-pose", "-1"]] {
+            assert!(Cli::try_parse_from(["symalign", "run"].into_iter().chain(bad)).is_err(), "{bad:?}");
+        }
+    }
+}

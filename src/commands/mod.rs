@@ -1,0 +1,45 @@
+//! What each command does with its arguments. Results go to standard output, everything else to standard error.
+
+pub mod eval;
+pub mod inspect;
+pub mod query;
+pub mod run;
+pub mod store;
+
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+use clap::CommandFactory;
+use symalign::error::{Result, RunError};
+use symalign::settings::{Profile, Settings};
+
+use crate::cli::{Cli, Exit};
+
+/// The settings file that is read when none is named.
+const CONFIG: &str = "pipeline.toml";
+
+/// The named settings file, else `pipeline.toml` if it is there, else the defaults.
+fn settings(config: Option<&Path>, profile: Option<Profile>) -> Result<Settings> {
+    match config {
+        Some(path) => Settings::load(path, profile),
+        None if Path::new(CONFIG).exists() => Settings::load(Path::new(CONFIG), profile),
+        None => Ok(Settings::profile(profile.unwrap_or_default())),
+    }
+}
+
+/// Prints results. A reader that has seen enough (`| head`) is no error.
+fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(RunError::file("standard output", error)),
+        _ => Ok(()),
+    }
+}
+
+/// Prints the completions for a shell.
+pub fn completions(shell: clap_complete::Shell) -> Result<Exit> {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "symalign", &mut script);
+    print(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Done)
+}
