@@ -3,9 +3,11 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bodies::BodyKind;
+use super::keyword::Kind;
 use super::records::{Fault, File, Read};
 use super::representation::{DEEPEST_NESTING, Placed, Representations};
 use super::structure::{Structure, Usage, structure};
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Transform;
 
 /// The items to build and place, and the branches that were left out.
@@ -19,11 +21,11 @@ pub(super) struct Assembly {
 /// Places the items of all products, then those of representations that no product leads to.
 ///
 /// `room` is how many items may be placed at most.
-pub(super) fn assemble(file: File, room: usize) -> Assembly {
+pub(super) fn assemble(file: File, room: usize, cancel: &Cancel) -> Result<Assembly, Cancelled> {
     let structure = structure(&file);
     let mut walk = Walk {
         structure: &structure,
-        representations: Representations::new(file, &structure, room),
+        representations: Representations::new(file, &structure, room, cancel),
         own: FxHashMap::default(),
         placed: Vec::new(),
     };
@@ -36,7 +38,8 @@ pub(super) fn assemble(file: File, room: usize) -> Assembly {
     if placed.is_empty() {
         placed = bare_items(&file, &mut faults, room);
     }
-    Assembly { placed, faults, has_representations: !structure.representations.is_empty() }
+    cancel.check()?;
+    Ok(Assembly { placed, faults, has_representations: !structure.representations.is_empty() })
 }
 
 /// The products that are part of no other; where all are, as in a cycle, the first one.
@@ -72,13 +75,16 @@ impl Walk<'_> {
         let structure = self.structure;
         for usage in structure.parts.get(&product).into_iter().flatten() {
             if let Err(fault) = self.part(usage, placement, path, above) {
-                self.representations.faults.push((usage.entity, fault));
+                self.representations.note(usage.entity, fault);
             }
         }
     }
 
     /// Places a product used in another one.
     fn part(&mut self, usage: &Usage, placement: &Transform, path: &mut Vec<u64>, above: &mut Vec<u64>) -> Read<()> {
+        if self.representations.is_cancelled() {
+            return Ok(());
+        }
         if above.contains(&usage.child) {
             return Err(Fault::new(usage.child, "a product that is part of itself"));
         }
@@ -130,12 +136,21 @@ impl Walk<'_> {
         items
     }
 
+    /// Whether a representation has mapped items.
+    fn maps_others(&mut self, representation: u64) -> bool {
+        let file = self.representations.file;
+        let is_mapped = |item: &u64| file.record(*item).is_ok_and(|r| r.is(Kind::MappedItem));
+        self.representations.content(representation).is_ok_and(|content| content.items.iter().any(is_mapped))
+    }
+
     /// Places the representations that nothing has placed, those that others map last; what was placed already is not
     /// placed again, since views and validation properties name the same items, as they name faces of shells.
     fn orphans(&mut self) {
         let mapped: FxHashSet<u64> = self.structure.mapped.iter().copied().collect();
         let structure = self.structure;
-        let (last, first): (Vec<u64>, Vec<u64>) = structure.representations.iter().partition(|r| mapped.contains(r));
+        let (mut last, first): (Vec<u64>, Vec<u64>) =
+            structure.representations.iter().partition(|r| mapped.contains(r));
+        last.sort_by_key(|id| !self.maps_others(*id));
         let mut known: FxHashSet<u64> = self.placed.iter().map(|p| p.item).collect();
         for id in first.into_iter().chain(last) {
             if !self.representations.placed.contains(&id) {

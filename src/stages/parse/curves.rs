@@ -1,10 +1,11 @@
 //! Curve entities -> [`Curve`].
 
+use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Cursor, Fault, Read, Record};
+use super::records::{Fault, Read, Record};
 use super::splines;
-use crate::brep::{Curve, Placement};
+use crate::brep::Curve;
 use crate::geometry::Point;
 
 /// How deep curves may be made of curves.
@@ -17,7 +18,6 @@ const CONIC: &[Kind] =
 impl Geometry<'_> {
     /// Any curve in space.
     pub fn curve(&self, id: u64) -> Read<Curve> {
-        self.refill();
         self.nested_curve(id, 0)
     }
 
@@ -26,7 +26,7 @@ impl Geometry<'_> {
         if depth > DEEPEST_CURVE {
             return Err(Fault::new(id, "curves nested too deep"));
         }
-        self.spend(id)?;
+        self.spend(id, 1)?;
         let record = self.file.record(id)?;
         for kind in record.kinds() {
             if let Some(curve) = self.curve_of_kind(&record, kind, depth)? {
@@ -137,21 +137,14 @@ impl Geometry<'_> {
         let forward = cursor.flag().unwrap_or(true);
         let by_point = cursor.word().eq_ignore_ascii_case(b"CARTESIAN");
         let parameter = |trim: &Trim| trim.parameter(&basis, self.units.angle, by_point);
-        match (parameter(&first), parameter(&second)) {
-            (Some(a), Some(b)) => {
-                let range = unwrapped(&basis, [a, b], forward);
-                Ok(Curve::Trimmed { basis: Box::new(basis), range, forward })
-            }
-            // A bounded curve trimmed by points that cannot be mapped back: its own ends are the best guess.
-            _ if matches!(
-                basis,
-                Curve::Nurbs(_) | Curve::Polyline(_) | Curve::Composite(_) | Curve::Trimmed { .. }
-            ) =>
-            {
-                Ok(basis)
-            }
-            _ => Err(record.fault("a curve trimmed at unknown parameters")),
+        let (Some(a), Some(b)) = (parameter(&first), parameter(&second)) else {
+            return Err(record.fault("a curve trimmed at no parameters"));
+        };
+        let range = unwrapped(&basis, [a, b], forward);
+        if !range.iter().all(|t| t.is_finite()) {
+            return Err(record.fault("a curve trimmed at impossible parameters"));
         }
+        Ok(Curve::Trimmed { basis: Box::new(basis), range, forward })
     }
 
     fn trim(&self, cursor: &mut Cursor) -> Read<Trim> {
@@ -178,7 +171,7 @@ struct Trim {
 impl Trim {
     fn parameter(&self, basis: &Curve, angle: f64, by_point: bool) -> Option<f64> {
         let given = self.parameter.map(|t| t * parameter_unit(basis, angle));
-        let mapped = || self.point.and_then(|p| parameter_at(basis, &p));
+        let mapped = || self.point.map(|p| basis.project(&p, None));
         if by_point { mapped().or(given) } else { given.or_else(mapped) }
     }
 }
@@ -192,30 +185,11 @@ pub(super) fn parameter_unit(curve: &Curve, angle: f64) -> f64 {
     }
 }
 
-/// The parameter of a point on a curve that has a closed form.
-fn parameter_at(curve: &Curve, p: &Point) -> Option<f64> {
-    let local = |placement: &Placement| placement.local(p);
-    match curve {
-        Curve::Line { origin, direction } => Some((p - origin).dot(direction) / direction.norm_squared()),
-        Curve::Circle { placement, .. } => Some(local(placement).y.atan2(local(placement).x)),
-        Curve::Ellipse { placement, semi_x, semi_y } => {
-            Some((local(placement).y / semi_y).atan2(local(placement).x / semi_x))
-        }
-        Curve::Parabola { placement, focal } => Some(local(placement).y / (2.0 * focal)),
-        Curve::Hyperbola { placement, semi_y, .. } => Some((local(placement).y / semi_y).asinh()),
-        Curve::Trimmed { basis, .. } => parameter_at(basis, p),
-        _ => None,
-    }
-}
-
 /// Shifts the second parameter of a periodic curve so that the piece runs the way `forward` says.
 fn unwrapped(basis: &Curve, [a, b]: [f64; 2], forward: bool) -> [f64; 2] {
-    let turn = std::f64::consts::TAU;
-    if !matches!(basis, Curve::Circle { .. } | Curve::Ellipse { .. }) {
-        return [a, b];
-    }
+    let Some(period) = basis.period() else { return [a, b] };
     let span = if forward { b - a } else { a - b };
-    let rest = span.rem_euclid(turn);
-    let span = if rest < 1e-12 { turn } else { rest };
+    let rest = span.rem_euclid(period);
+    let span = if rest < 1e-12 * period { period } else { rest };
     [a, if forward { a + span } else { a - span }]
 }

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::cursor::Cursor;
 use super::keyword::Kind;
-use super::records::{Cursor, Fault, Read, Record};
+use super::records::{Fault, Read, Record};
 use super::topology::{Builder, LooseFace};
 use crate::brep::{FaceGeometry, Facets};
 use crate::geometry::Point;

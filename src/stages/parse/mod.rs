@@ -14,6 +14,7 @@
 
 mod assembly;
 mod bodies;
+mod cursor;
 mod curves;
 mod facets;
 mod header;
@@ -27,6 +28,8 @@ mod representation;
 mod splines;
 mod structure;
 mod surfaces;
+#[cfg(test)]
+mod tests;
 mod topology;
 mod units;
 
@@ -38,11 +41,12 @@ use self::records::File;
 use self::representation::Placed;
 use self::topology::Builder;
 use super::{ModelError, Stage};
-use crate::brep::measure::Measures;
-use crate::brep::{BodyId, Mesh, Model, Occurrence, Skipped};
+use crate::brep::measure::{Measures, measure};
+use crate::brep::{BodyId, Mesh, Model, Occurrence, Skipped, tessellate};
 use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::Isometry;
 
-/// Limits of reading.
+/// Limits of reading, and how finely faces are tessellated.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
@@ -50,11 +54,12 @@ pub struct Options {
     pub most_occurrences: usize,
     /// The most faces that are read, counted once for each body.
     pub most_faces: usize,
+    pub tessellation: tessellate::Options,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { most_occurrences: 200_000, most_faces: 2_000_000 }
+        Self { most_occurrences: 200_000, most_faces: 2_000_000, tessellation: tessellate::Options::default() }
     }
 }
 
@@ -69,6 +74,31 @@ pub struct Parsed {
     pub skipped: Vec<Skipped>,
     /// Things that were mended or guessed.
     pub warnings: Vec<String>,
+}
+
+/// Reads a STEP file, moves it by `pose` where there is one, tessellates and measures it.
+///
+/// # Errors
+/// As [`read`]; and where no face can be tessellated or the model is too large or small for mm in `f64`.
+pub fn parse(bytes: &[u8], options: &Options, pose: Option<&Isometry>, cancel: &Cancel) -> Result<Parsed, ModelError> {
+    let (model, mut skipped, mut warnings) = read(bytes, options, cancel)?;
+    let model = match pose {
+        Some(pose) => model.moved(pose),
+        None => model,
+    };
+    let meshed = tessellate::tessellate(&model, &options.tessellation, cancel);
+    let (mesh, more_skipped, more_warnings) = meshed.map_err(|c| ModelError::cancelled(Stage::Parse, c))?;
+    skipped.extend(more_skipped);
+    warnings.extend(more_warnings);
+    let measures = measure(&model, &mesh);
+    let size = measures.tolerance.size();
+    if mesh.faces.is_empty() || size.is_nan() || size <= 0.0 || size.is_infinite() {
+        return Err(match skipped.first() {
+            Some(first) => ModelError::at(Stage::Parse, first.entity, format!("no usable face: {}", first.why)),
+            None => ModelError::new(Stage::Parse, "no usable face"),
+        });
+    }
+    Ok(Parsed { model, mesh, measures, skipped, warnings })
 }
 
 /// Reads the B-rep of a STEP file, in mm, with what was left out and what was mended or guessed.
@@ -88,7 +118,7 @@ pub fn read(
         return Err(ModelError::new(Stage::Parse, why));
     }
     let file = File { bytes, table: &table };
-    let assembly = assemble(file, options.most_occurrences);
+    let assembly = assemble(file, options.most_occurrences, cancel).map_err(stopped)?;
     let units = assembly.placed.first().map(|p| p.units).unwrap_or_default();
     let mut builder = Builder::new(Geometry::new(file, units));
     builder.model.schema = header::schema(&file);
@@ -114,7 +144,7 @@ fn build(builder: &mut Builder, assembly: &Assembly, options: &Options, cancel: 
             Some(known) => *known,
             None => {
                 let file = builder.geometry.file;
-                builder.use_units_of(Geometry::new(file, *units));
+                builder.use_units(*units);
                 let record = file.record(*item).map_err(|f| ModelError::at(Stage::Parse, f.entity, f.why))?;
                 let made = builder.body(&record, *kind, cancel).map_err(stopped)?;
                 bodies.insert(*item, made);

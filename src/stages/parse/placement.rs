@@ -8,32 +8,26 @@ use super::units::Units;
 use crate::brep::Placement;
 use crate::geometry::{Point, Transform, Vector, any_perpendicular};
 
-/// How many curves and surfaces one curve or surface may be made of: far above any real one.
-const MOST_NESTED: u32 = 100_000;
-
 /// Decodes geometry in the units of one representation.
 #[derive(Clone)]
 pub(super) struct Geometry<'a> {
     pub file: File<'a>,
     pub units: Units,
-    /// Curves and surfaces that the one being read may still consist of.
-    pub(super) budget: Cell<u32>,
+    /// Curves, surfaces, control points and edge uses that may still be made.
+    budget: Cell<usize>,
 }
 
 impl<'a> Geometry<'a> {
+    /// In a file in which nothing is shared each thing made has some bytes of its own: more things than bytes means
+    /// that references multiply beyond any use.
     pub fn new(file: File<'a>, units: Units) -> Self {
-        Self { file, units, budget: Cell::new(MOST_NESTED) }
+        Self { file, units, budget: Cell::new(file.bytes.len()) }
     }
 
-    /// Allows another curve or surface its full number of pieces.
-    pub(super) fn refill(&self) {
-        self.budget.set(MOST_NESTED);
-    }
-
-    /// Counts one nested curve or surface.
-    pub(super) fn spend(&self, id: u64) -> Read<()> {
-        let left = self.budget.get().checked_sub(1).ok_or_else(|| Fault::new(id, "made of too many pieces"))?;
-        self.budget.set(left);
+    /// Counts `count` things made for entity `id`.
+    pub(super) fn spend(&self, id: u64, count: usize) -> Read<()> {
+        let left = self.budget.get().checked_sub(count);
+        self.budget.set(left.ok_or_else(|| Fault::new(id, "references multiply beyond the file's size"))?);
         Ok(())
     }
 

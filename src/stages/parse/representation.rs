@@ -1,5 +1,7 @@
 //! What a representation places: its bodies, those of related representations and those of mapped items.
 
+use std::rc::Rc;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bodies::BodyKind;
@@ -8,10 +10,14 @@ use super::placement::Geometry;
 use super::records::{Fault, File, Read, Record};
 use super::structure::{Relation, Structure};
 use super::units::{Units, units_of_context};
+use crate::cancel::Cancel;
 use crate::geometry::Transform;
 
 /// How deep mapped items and products may be nested.
 pub(super) const DEEPEST_NESTING: usize = 64;
+
+/// Branches left out beyond this number are not told: one broken product may be used very often.
+const MOST_FAULTS: usize = 10_000;
 
 /// An item that makes a body, where it lies, and through which mapped items.
 #[derive(Clone, Debug)]
@@ -35,7 +41,7 @@ pub(super) struct Content {
 pub(super) struct Representations<'a> {
     pub file: File<'a>,
     pub structure: &'a Structure,
-    contents: FxHashMap<u64, Content>,
+    contents: FxHashMap<u64, Rc<Content>>,
     units: FxHashMap<u64, Units>,
     /// Representations that were placed.
     pub placed: FxHashSet<u64>,
@@ -43,6 +49,7 @@ pub(super) struct Representations<'a> {
     pub faults: Vec<(u64, Fault)>,
     /// Items that may still be placed.
     pub room: usize,
+    cancel: &'a Cancel,
 }
 
 /// Where an expansion is: the placement, the path and the representations that lead here.
@@ -54,13 +61,25 @@ struct Branch {
 }
 
 impl<'a> Representations<'a> {
-    pub fn new(file: File<'a>, structure: &'a Structure, room: usize) -> Self {
+    pub fn new(file: File<'a>, structure: &'a Structure, room: usize, cancel: &'a Cancel) -> Self {
         let (contents, units) = (FxHashMap::default(), FxHashMap::default());
-        Self { file, structure, contents, units, placed: FxHashSet::default(), faults: Vec::new(), room }
+        Self { file, structure, contents, units, placed: FxHashSet::default(), faults: Vec::new(), room, cancel }
+    }
+
+    /// Notes that a branch at `entity` is left out.
+    pub fn note(&mut self, entity: u64, fault: Fault) {
+        if self.faults.len() < MOST_FAULTS {
+            self.faults.push((entity, fault));
+        }
+    }
+
+    /// Whether the work should stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.is_cancelled()
     }
 
     /// The items and units of a representation.
-    pub fn content(&mut self, id: u64) -> Read<Content> {
+    pub fn content(&mut self, id: u64) -> Read<Rc<Content>> {
         if let Some(known) = self.contents.get(&id) {
             return Ok(known.clone());
         }
@@ -71,7 +90,7 @@ impl<'a> Representations<'a> {
             Some(context) => *self.units.entry(context).or_insert_with(|| units_of_context(&self.file, context)),
             None => Units::default(),
         };
-        let content = Content { items, units };
+        let content = Rc::new(Content { items, units });
         self.contents.insert(id, content.clone());
         Ok(content)
     }
@@ -91,6 +110,9 @@ impl<'a> Representations<'a> {
         let mut at = 0;
         while let Some(&(id, placement)) = queue.get(at) {
             at += 1;
+            if self.cancel.is_cancelled() {
+                return;
+            }
             if !seen.insert(id) {
                 continue;
             }
@@ -98,7 +120,7 @@ impl<'a> Representations<'a> {
             self.follow_relations(id, &placement, &mut queue);
             let here = Branch { placement, path: branch.path.clone(), above: [&branch.above[..], &[id]].concat() };
             if let Err(fault) = self.expand_items(id, &here, &mut items, found) {
-                self.faults.push((id, fault));
+                self.note(id, fault);
             }
         }
     }
@@ -113,12 +135,12 @@ impl<'a> Representations<'a> {
         let content = self.content(id)?;
         for &item in &content.items {
             let Ok(record) = self.file.record(item) else {
-                self.faults.push((id, Fault::new(item, "there is no such item")));
+                self.note(id, Fault::new(item, "there is no such item"));
                 continue;
             };
             if record.is(Kind::MappedItem) {
                 if let Err(fault) = self.expand_mapped(&record, &content, branch, found) {
-                    self.faults.push((item, fault));
+                    self.note(item, fault);
                 }
             } else if let Some(kind) = BodyKind::of(&record).filter(|_| seen.insert(item)) {
                 self.room = self.room.checked_sub(1).ok_or_else(|| Fault::new(id, "too many bodies are placed"))?;
@@ -168,7 +190,7 @@ impl<'a> Representations<'a> {
             let other = if relation.first == id { relation.second } else { relation.first };
             match self.transform(relation, other) {
                 Ok(transform) => queue.push((other, placement.after(&transform))),
-                Err(fault) => self.faults.push((other, fault)),
+                Err(fault) => self.note(other, fault),
             }
         }
     }

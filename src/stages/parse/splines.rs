@@ -1,8 +1,9 @@
 //! B-spline curves and surfaces in all their encodings -> NURBS with written-out knots.
 
+use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Cursor, Read, Record};
+use super::records::{Read, Record};
 use crate::brep::nurbs::{NurbsCurve, NurbsSurface};
 use crate::geometry::Point;
 
@@ -57,6 +58,7 @@ pub(super) fn curve(geometry: &Geometry, record: &Record) -> Read<NurbsCurve> {
     let degree = degree_of(record, &mut cursor)?;
     let ids = cursor.references()?;
     check_count(record, degree, ids.len())?;
+    geometry.spend(record.id, ids.len())?;
     let points = ids.into_iter().map(|id| geometry.point(id)).collect::<Read<Vec<_>>>()?;
     let closed = cursor.skip_many(1).flag().unwrap_or(false);
     cursor.skip();
@@ -78,6 +80,7 @@ pub(super) fn surface(geometry: &Geometry, record: &Record) -> Read<NurbsSurface
     cursor.skip();
     let (degree_u, degree_v) = (degree_of(record, &mut cursor)?, degree_of(record, &mut cursor)?);
     let (points, columns) = net(geometry, record, &mut cursor)?;
+    geometry.spend(record.id, points.len())?;
     let rows = points.len() / columns;
     check_count(record, degree_u, rows)?;
     check_count(record, degree_v, columns)?;

@@ -25,7 +25,6 @@ const SWEPT: &[Kind] =
 impl Geometry<'_> {
     /// Any surface.
     pub fn surface(&self, id: u64) -> Read<Surface> {
-        self.refill();
         self.nested_surface(id, 0)
     }
 
@@ -33,7 +32,7 @@ impl Geometry<'_> {
         if depth > DEEPEST_SURFACE {
             return Err(Fault::new(id, "surfaces nested too deep"));
         }
-        self.spend(id)?;
+        self.spend(id, 1)?;
         let record = self.file.record(id)?;
         for kind in record.kinds() {
             if let Some(surface) = self.surface_of_kind(&record, kind, depth)? {

@@ -8,6 +8,7 @@ use super::keyword::Kind;
 use super::notes::Notes;
 use super::placement::{Geometry, orthonormal};
 use super::records::{Fault, Read, Record};
+use super::units::Units;
 use crate::brep::{Curve, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceLoop, Model, Surface, Vertex, VertexId};
 use crate::geometry::{Point, Vector};
 
@@ -52,16 +53,16 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Reads from now on in the units of `geometry`; what was read in other units is not shared.
-    pub fn use_units_of(&mut self, geometry: Geometry<'a>) {
-        if geometry.units != self.geometry.units {
+    /// Reads from now on in these units; what was read in other units is not shared.
+    pub fn use_units(&mut self, units: Units) {
+        if units != self.geometry.units {
             self.vertices.clear();
             self.edges.clear();
             self.straight_edges.clear();
             self.curves.clear();
             self.surfaces.clear();
+            self.geometry.units = units;
         }
-        self.geometry = geometry;
     }
 
     pub(super) fn record(&self, id: u64) -> Read<Record<'a>> {
@@ -178,9 +179,11 @@ impl<'a> Builder<'a> {
             face_loop.pole = Some(self.vertex(cursor.skip_many(1).reference()?)?);
         } else if record.is(Kind::PolyLoop) {
             let ids = record.fields(&[Kind::RepresentationItem, Kind::PolyLoop]).skip_many(1).references()?;
+            self.geometry.spend(id, ids.len())?;
             face_loop.uses = self.poly_loop(&record, &ids)?;
         } else if record.is(Kind::EdgeLoop) {
             let ids = record.fields(&[Kind::RepresentationItem, Kind::EdgeLoop]).skip_many(1).references()?;
+            self.geometry.spend(id, ids.len())?;
             face_loop.uses = ids.into_iter().map(|id| self.edge_use(id, 0)).collect::<Read<_>>()?;
             if face_loop.uses.is_empty() {
                 return Err(record.fault("a loop without edges"));
