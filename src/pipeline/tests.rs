@@ -74,9 +74,11 @@ impl Fake {
             Ok(number)
         })?
         .then(Stage::Descriptor, move |job, number| {
-            while number >= 1000.0 {
-                job.cancel.check().map_err(|c| ModelError::cancelled(Stage::Descriptor, c))?;
-                std::thread::sleep(Duration::from_millis(1));
+            if number >= 1000.0 {
+                loop {
+                    job.cancel.check().map_err(|c| ModelError::cancelled(Stage::Descriptor, c))?;
+                    std::thread::sleep(Duration::from_millis(1));
+                }
             }
             let done = fake.computed.fetch_add(1, Ordering::SeqCst) + 1;
             if Some(done) == fake.stop_after {
