@@ -42,8 +42,8 @@ impl EdgeShapes {
 
     /// Whether the edge has no length.
     pub fn is_degenerate(&self, edge: EdgeId) -> bool {
-        // Written so that a length that is not a number counts as none.
-        !(self.shapes[&edge].length > self.shortest)
+        let length = self.shapes[&edge].length;
+        length.is_nan() || length <= self.shortest
     }
 
     /// Arc length of an edge, mm.

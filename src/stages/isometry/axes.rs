@@ -13,7 +13,7 @@ const FACES: usize = 12;
 /// The plane that swaps the centroids of two faces, if it also maps the axis of one to that of the other.
 pub(super) fn bisector(a: &Outline, b: &Outline, size: f64) -> Option<Plane> {
     let between = b.centroid - a.centroid;
-    if !(between.norm() > SAME_LINE * size) {
+    if between.norm() <= SAME_LINE * size {
         return None;
     }
     let plane = Plane::through(&nalgebra::center(&a.centroid, &b.centroid), &between);

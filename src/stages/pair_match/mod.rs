@@ -198,7 +198,7 @@ impl Matcher<'_> {
             return;
         }
         let limit = self.options.corner_distance * self.size;
-        let both = !self.options.orientation || !(p.oriented && q.oriented);
+        let both = !(self.options.orientation && p.oriented && q.oriented);
         for order in [Order::Reversed, Order::Same] {
             // A face is always its own image in the same order: that says nothing of symmetry, unless it has no side.
             if order == Order::Same && a == b && !both {

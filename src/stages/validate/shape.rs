@@ -28,7 +28,7 @@ pub fn histogram_correlation(a: &[f64], b: &[f64], bins: usize) -> Option<f64> {
     let all = || a.iter().chain(b);
     let low = all().copied().fold(f64::INFINITY, f64::min);
     let high = all().copied().fold(f64::NEG_INFINITY, f64::max);
-    if !(high > low) || bins == 0 {
+    if low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) || bins == 0 {
         return None;
     }
     let histogram = |values: &[f64]| {
