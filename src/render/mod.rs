@@ -25,7 +25,7 @@ pub const THUMBNAIL: usize = 96;
 /// Samples to a pixel, along each side: 3 is the least that shows no stairs.
 const SAMPLES: usize = 3;
 /// The share of light that reaches faces turned away from the lamp.
-const AMBIENT: f64 = 0.38;
+const AMBIENT: f64 = 0.5;
 /// Plain surfaces.
 pub const GREY: Rgb = [176, 180, 186];
 

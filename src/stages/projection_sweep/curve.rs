@@ -20,8 +20,11 @@ pub(super) struct Choice {
     pub third_area: f64,
 }
 
-/// Local minima that are refined: the lowest ones. A narrow minimum may look high between two steps.
+/// Local minima that are refined at most: the lowest ones.
 const REFINED: usize = 4;
+/// How far below its sample a minimum may lie between two steps, in steps (radians) times the largest area: a convex
+/// slice's shadow changes by at most its shadow a quarter turn on; twice that leaves room for gaps.
+const DEEPER: f64 = 2.0;
 /// Width at which golden section stops, radians (1e-4 degrees).
 const ANGLE: f64 = 2e-6;
 
@@ -45,9 +48,9 @@ pub(super) fn smallest(
     cancel: &Cancel,
 ) -> Result<Choice, Cancelled> {
     let mut minima = Vec::new();
-    for k in local_minima(&sweep.areas) {
+    let step = options.step_deg.to_radians();
+    for k in local_minima(&sweep.areas, step) {
         let sampled = (sweep.angles[k], sweep.areas[k]);
-        let step = options.step_deg.to_radians();
         let angle = if options.refine { golden_section(shadows, sampled, step, cancel)? } else { sampled.0 };
         minima.push(at(shadows, angle, cancel)?);
     }
@@ -65,13 +68,16 @@ fn from_start(angle: f64) -> f64 {
     turned.min(PI - turned)
 }
 
-/// Positions of the lowest local minima of the closed curve, lowest first.
-fn local_minima(areas: &[f64]) -> Vec<usize> {
+/// Positions of the local minima of the closed curve that may hold the smallest area, lowest first.
+fn local_minima(areas: &[f64], step: f64) -> Vec<usize> {
     let n = areas.len();
     let low = |k: usize| areas[k] <= areas[(k + 1) % n] && areas[k] <= areas[(k + n - 1) % n];
     let mut minima: Vec<_> = (0..n).filter(|&k| low(k)).collect();
     minima.sort_by(|&a, &b| areas[a].total_cmp(&areas[b]).then(a.cmp(&b)));
     minima.truncate(REFINED);
+    let most = areas.iter().copied().fold(0.0, f64::max);
+    let least = minima.first().map_or(0.0, |&k| areas[k]);
+    minima.retain(|&k| areas[k] - DEEPER * step.abs() * most <= least);
     minima
 }
 
@@ -109,7 +115,8 @@ mod tests {
 
     #[test]
     fn minima_are_found_across_the_seam_of_the_curve() {
-        assert_eq!(local_minima(&[1.0, 2.0, 3.0, 0.5, 4.0, 3.0]), vec![3, 0]);
+        assert_eq!(local_minima(&[1.0, 2.0, 3.0, 0.5, 4.0, 3.0], 0.1), vec![3, 0]);
+        assert_eq!(local_minima(&[1.0, 2.0, 3.0, 0.5, 4.0, 3.0], 0.01), vec![3]);
         assert_eq!(contrast(&[4.0, 3.0, 2.0]), 0.5);
         assert_eq!(contrast(&[0.0, 0.0]), 0.0);
     }
