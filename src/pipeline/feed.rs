@@ -88,7 +88,7 @@ impl Feed<'_> {
         Ok(manifest)
     }
 
-    /// False: nobody takes the parcels any more.
+    /// False: told to stop, or nobody takes the parcels any more.
     fn member(&mut self, member: Member, manifest: &mut Manifest, outbox: &Sender<Parcel<Vec<u8>>>) -> bool {
         let hash = match &member.bytes {
             Ok(bytes) => *blake3::hash(bytes).as_bytes(),
@@ -118,6 +118,11 @@ impl Feed<'_> {
 
     fn send(&self, job: Job, bytes: Vec<u8>, outbox: &Sender<Parcel<Vec<u8>>>) -> bool {
         self.budget.take(job.bytes);
+        if self.stop.load(Ordering::Relaxed) {
+            // Told while it waited for room: this model has not set out.
+            self.budget.give_back(job.bytes);
+            return false;
+        }
         let job = Arc::new(job);
         self.bench.enter(&job);
         outbox.send(Parcel { job, load: Ok(bytes) }).is_ok()

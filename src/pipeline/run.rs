@@ -105,7 +105,7 @@ pub fn run_with(request: &Request, progress: &mut Progress, build: &Build) -> Re
 fn stream(request: &Request, progress: &mut Progress, build: &Build, collector: &mut Collector) -> Result<Manifest> {
     let settings = request.settings;
     let bench = Bench::new(settings.busy_limit(), Duration::from_secs_f64(settings.limits.seconds));
-    let budget = Budget::new(settings.limits.memory_mb);
+    let budget = Budget::new(settings.busy_limit(), settings.limits.memory_mb);
     let counters = Counters::default();
     let known = collector.known(request.retry_failed);
     std::thread::scope(|scope| {

@@ -147,6 +147,7 @@ fn bytes_do_not_depend_on_workers_shards_or_interruptions() {
     let mut computed = 0;
     for stop_after in [Some(1), Some(2), None] {
         let (report, now) = run(&settings(&input, &at("cut"), 1), stop_after, |_| {});
+        assert_eq!(report.interrupted, stop_after.is_some(), "few models are in flight when the stop is asked for");
         assert_eq!(report.interrupted, !published_path(&at("cut")).exists());
         computed += now;
     }
