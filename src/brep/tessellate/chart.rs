@@ -171,6 +171,16 @@ impl<'a> Chart<'a> {
         longest.map(|l| if l.is_finite() && l > 0.0 { l } else { 1.0 })
     }
 
+    /// Lengths of unit steps in which the cells of a grid are squares, so that Delaunay triangles are about as long
+    /// and as wide as the cells: in true lengths they would span a narrow face that bends along its whole length.
+    pub fn metric(&self, rectangle: [f64; 4], cells: [usize; 2]) -> [f64; 2] {
+        let widths = [rectangle[1] - rectangle[0], rectangle[3] - rectangle[2]];
+        if cells == [1, 1] || widths.iter().any(|w| !w.is_finite() || *w <= 0.0) {
+            return self.scale(rectangle);
+        }
+        [cells[0] as f64 / widths[0], cells[1] as f64 / widths[1]]
+    }
+
     /// In how many steps to cut the rectangle along u and v, by curvature.
     pub fn steps(&self, rectangle: [f64; 4], fineness: &Fineness) -> [usize; 2] {
         let [u0, u1, v0, v1] = rectangle;
@@ -200,7 +210,7 @@ impl<'a> Chart<'a> {
             Surface::Revolution { profile, .. } => [4, profile.breaks().len().max(4)],
             _ => [4, 4],
         };
-        let samples = spans.map(|n| (2 * n + 2).clamp(4, 40));
+        let samples = spans.map(|n| (2 * n + 2).clamp(8, 40));
         let ruled = self.surface.is_ruled_along_v();
         let at = |s: f64, t: f64| self.jet([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
         let along = |n: usize, jet: &dyn Fn(f64, f64) -> Jet| {
@@ -211,10 +221,21 @@ impl<'a> Chart<'a> {
             }
             need.min(MAX_LINES as f64).ceil() as usize
         };
-        let nu = along(samples[0], &at);
-        let nv = if ruled { 1 } else { along(samples[1], &|s, t| at(t, s)) };
-        [nu, nv]
+        if ruled {
+            return [along(samples[0], &at), 1];
+        }
+        let twist = twist_need([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)].map(|j| j.point), fineness);
+        [along(samples[0], &at).max(twist), along(samples[1], &|s, t| at(t, s)).max(twist)]
     }
+}
+
+/// How many steps in each direction a surface needs whose corners do not lie in a plane: the diagonals of a cell are
+/// apart by a quarter of the second mixed difference, whatever rows and columns look like.
+fn twist_need([a, b, c, d]: [Point; 4], fineness: &Fineness) -> usize {
+    let apart = (a.coords - b.coords - c.coords + d.coords) * 0.25;
+    let normal = (d - a).cross(&(c - b)).try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::zeros);
+    let need = (apart.dot(&normal).abs() / fineness.deflection).sqrt();
+    if need.is_finite() { need.ceil().clamp(1.0, MAX_LINES as f64) as usize } else { 1 }
 }
 
 /// How many equal steps a row of samples needs for the deflection and the angle of the normals.

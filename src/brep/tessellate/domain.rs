@@ -48,9 +48,11 @@ impl Patch {
 }
 
 /// Triangulates the part of the surface that the paths bound. `None` where they bound nothing sensible.
-pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness) -> Option<Patch> {
+///
+/// `quick`: ears and strips are tried before the constrained Delaunay triangulation with points inside.
+pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness, quick: bool) -> Option<Patch> {
     if paths.iter().any(Path::winds) || is_complement(chart, paths) {
-        return strip::triangulate(chart, paths, fineness);
+        return strip::triangulate(chart, paths, fineness, quick);
     }
     let outer =
         (0..paths.len()).max_by(|&a, &b| paths[a].signed_area().abs().total_cmp(&paths[b].signed_area().abs()))?;
@@ -60,10 +62,10 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     let steps = chart.steps(layout.rectangle, fineness);
     let flat = matches!(*chart.surface, crate::brep::Surface::Plane(_));
     let ruled = chart.surface.is_ruled_along_v();
-    let quick = if flat { None } else { layout.by_zip(&patch, steps) };
-    let flat_enough = flat || steps == [1, 1];
-    let quick = quick.or_else(|| if flat_enough { ears(&patch.uv, &layout.rings, layout.area) } else { None });
-    if let Some(triangles) = quick {
+    let zipped = if flat || !quick { None } else { layout.by_zip(&patch, steps) };
+    let flat_enough = flat || (quick && steps == [1, 1]);
+    let simple = zipped.or_else(|| if flat_enough { ears(&patch.uv, &layout.rings, layout.area) } else { None });
+    if let Some(triangles) = simple {
         return Some(Patch { triangles, ..patch });
     }
     let cells =
@@ -199,13 +201,13 @@ fn chains(uv: &[Uv], clockwise: bool, [first, last]: [f64; 2]) -> Option<(Vec<u3
 fn by_delaunay(chart: &Chart, layout: &Layout, mut patch: Patch, grid: Option<[usize; 2]>) -> Option<Patch> {
     let segments = layout.segments(patch.uv.len());
     let sides: Vec<[Uv; 2]> = segments.iter().map(|s| s.map(|i| patch.uv[i as usize])).collect();
-    let whole = rectangle(patch.uv.iter());
+    let mut scale = chart.scale(rectangle(patch.uv.iter()));
     if let Some(cells) = grid {
+        scale = chart.metric(layout.rectangle, cells);
         let mut grid = Grid::new(layout.rectangle, cells);
         sides.iter().for_each(|[a, b]| grid.block(a, b));
         grid.nodes(false).for_each(|uv| patch.add(chart, uv));
     }
-    let scale = chart.scale(whole);
     let inside = |p: &Uv| sides.iter().filter(|[a, b]| crosses_below(a, b, p, 0)).count() % 2 == 1;
     fill(chart, patch, &segments, scale, inside)
 }

@@ -24,6 +24,7 @@ pub(super) struct EdgeLines {
 }
 
 /// What the edges of a body are cut by.
+#[derive(Clone, Copy)]
 pub(super) struct Fineness {
     /// Largest distance between chord and curve, mm.
     pub deflection: f64,

@@ -14,6 +14,13 @@ const FAR: f64 = 0.01;
 /// Segments on each side of a face that is bounded by its surface's own limits.
 const RIM_SEGMENTS: usize = 24;
 
+/// Triangles whose area is off by more than this share are made again, finer and without short cuts.
+const AREA_OFF: f64 = 0.015;
+/// Faces smaller than this share of the square of the model's size are not made again.
+const UNSEEN: f64 = 1e-6;
+/// How often a face is made again at most, each time with a quarter of the deflection.
+const REFINEMENTS: usize = 2;
+
 /// What all faces of a model need.
 pub(super) struct Context<'a> {
     pub model: &'a Model,
@@ -66,14 +73,50 @@ fn trimmed(
     if paths.is_empty() && !chart.is_closed() {
         paths.push(rim(chart, surface).ok_or("the face has no bounds and its surface is infinite")?);
     }
-    let patch = domain::triangulate(chart, &mut paths, &context.fineness).ok_or("the loops bound no region")?;
-    let integrals = integrate(chart, &patch, &paths, reference);
+    let mut best = patch(chart, &mut paths, &context.fineness, true, reference)?;
+    if matches!(*chart.surface, Surface::Plane(_)) {
+        return Ok(best);
+    }
+    let mut fineness = context.fineness;
+    for _ in 0..REFINEMENTS {
+        let off = error(&best, context);
+        if off <= 1.0 {
+            break;
+        }
+        fineness = Fineness { deflection: 0.25 * fineness.deflection, angle: 0.5 * fineness.angle };
+        let Ok(finer) = patch(chart, &mut paths, &fineness, false, reference) else { break };
+        if error(&finer, context) < off {
+            best = finer;
+        }
+    }
+    Ok(best)
+}
+
+fn patch(
+    chart: &Chart,
+    paths: &mut [Path],
+    fineness: &Fineness,
+    quick: bool,
+    reference: &Point,
+) -> Result<FaceMesh, String> {
+    let patch = domain::triangulate(chart, paths, fineness, quick).ok_or("the loops bound no region")?;
+    let integrals = integrate(chart, &patch, paths, reference);
     if !(integrals.area.is_finite() && integrals.area > 0.0 && integrals.flux.is_finite()) {
         return Err("the area is not a positive number".to_owned());
     }
     let turn = |t: [u32; 3]| if chart.flipped { [t[0], t[2], t[1]] } else { t };
     let triangles = patch.triangles.into_iter().map(turn).collect();
     Ok(FaceMesh { points: patch.points, triangles, integrals, reference: *reference, warning: None })
+}
+
+/// How far the triangles are from the surface they stand for, 1 being the most that is taken: their area, and the
+/// volume between them and the surface, which is their mean distance times the area.
+fn error(mesh: &FaceMesh, context: &Context) -> f64 {
+    let (plain, exact) = (integrate_triangles(&mesh.points, &mesh.triangles, &mesh.reference), &mesh.integrals);
+    let unseen = UNSEEN * context.size * context.size;
+    let by_area = (plain.area - exact.area).abs() / (AREA_OFF * exact.area).max(unseen);
+    let by_distance = (plain.flux - exact.flux).abs() / (context.fineness.deflection * exact.area.max(unseen));
+    by_area.max(by_distance)
 }
 
 /// The border of the surface's own parameter rectangle.

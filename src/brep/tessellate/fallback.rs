@@ -16,7 +16,7 @@ pub(super) fn planar_fill(borders: Vec<[Vec<Point>; 2]>, size: f64, fineness: &F
     let surface = Surface::Plane(Placement { origin: mean(&largest[0]), x, y: z.cross(&x), z });
     let chart = Chart::new(&surface, true, &[], size);
     let mut paths: Vec<Path> = paths(&chart, borders, size, f64::INFINITY).ok()?;
-    triangulate(&chart, &mut paths, fineness)
+    triangulate(&chart, &mut paths, fineness, true)
 }
 
 /// Half the sum of the cross products along a closed polyline: its area vector.

@@ -15,12 +15,12 @@ use crate::geometry::Point;
 const MAX_CANDIDATES: usize = 200;
 
 /// See the module; `None` where the paths bound nothing finite.
-pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness) -> Option<Patch> {
+pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness, quick: bool) -> Option<Patch> {
     let along = (0..2)
         .find(|&a| paths.iter().any(|p| p.winding[a] != 0))
         .or_else(|| (0..2).find(|&a| chart.periods[a].is_some()))?;
     chart.periods[along]?;
-    if let Some(patch) = between_two_rings(chart, paths, fineness) {
+    if quick && let Some(patch) = between_two_rings(chart, paths, fineness) {
         return Some(patch);
     }
     let mut strip = Strip::new(chart, along, paths)?;
@@ -28,10 +28,10 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     strip.orient(chart, paths)?;
     let rectangle = strip.rectangle(chart)?;
     let steps = chart.steps(rectangle, fineness).map(|n| n.max(2));
-    let scale = chart.scale(rectangle);
-    let mut cells =
-        if chart.surface.is_ruled_along_v() { Grid::rows_for_shape(rectangle, steps, scale) } else { steps };
+    let ruled = chart.surface.is_ruled_along_v();
+    let mut cells = if ruled { Grid::rows_for_shape(rectangle, steps, chart.scale(rectangle)) } else { steps };
     cells[along] = cells[along].max(6);
+    let scale = chart.metric(rectangle, cells);
     let mut grid = Grid::new(rectangle, cells);
     strip.pieces.iter().for_each(|[a, b]| grid.block(a, b));
     (0..2).filter(|&axis| strip.cuts[axis].is_some()).for_each(|axis| grid.join_sides(axis));
