@@ -117,7 +117,11 @@ impl Bvh {
             p,
             |_| limit,
             |triangle| {
-                found = accept(triangle) && (nearest_on_triangle(p, &triangle.corners) - p).norm_squared() <= limit;
+                // Most triangles of a leaf are ruled out by their plane.
+                let height = triangle.normal.dot(&(p - triangle.corners[0]));
+                found = height * height <= limit
+                    && accept(triangle)
+                    && (nearest_on_triangle(p, &triangle.corners) - p).norm_squared() <= limit;
                 found
             },
         );
@@ -160,11 +164,19 @@ impl Bvh {
                 }
                 continue;
             }
-            let children = [index + 1, node.start].map(|i| (i, squared_distance(&self.nodes[i as usize].bounds, p)));
-            let nearer = usize::from(children[1].1 < children[0].1);
-            stack[depth] = children[1 - nearer];
-            stack[depth + 1] = children[nearer];
-            depth += 2;
+            let (left, right) = (index + 1, node.start);
+            let to = |i: u32| squared_distance(&self.nodes[i as usize].bounds, p);
+            let (mut far, mut near) = ((right, to(right)), (left, to(left)));
+            if far.1 < near.1 {
+                std::mem::swap(&mut far, &mut near);
+            }
+            let limit = limit(());
+            for child in [far, near] {
+                if child.1 <= limit {
+                    stack[depth] = child;
+                    depth += 1;
+                }
+            }
         }
     }
 }
@@ -176,9 +188,15 @@ fn middle(triangle: &Triangle) -> Point {
 }
 
 /// Squared distance from `p` to the box, 0 inside.
+#[inline]
 fn squared_distance(bounds: &Aabb, p: &Point) -> f64 {
-    let side = |i: usize| (bounds.min[i] - p[i]).max(p[i] - bounds.max[i]).max(0.0);
-    let (x, y, z) = (side(0), side(1), side(2));
+    let side = |low: f64, x: f64, high: f64| {
+        let outside = if low - x > x - high { low - x } else { x - high };
+        if outside > 0.0 { outside } else { 0.0 }
+    };
+    let x = side(bounds.min.x, p.x, bounds.max.x);
+    let y = side(bounds.min.y, p.y, bounds.max.y);
+    let z = side(bounds.min.z, p.z, bounds.max.z);
     x * x + y * y + z * z
 }
 

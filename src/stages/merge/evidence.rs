@@ -1,4 +1,8 @@
 //! The faces that a plane maps onto each other, by inverse look-up.
+//!
+//! A plane that maps nearly the whole surface onto itself needs no other evidence. One that maps only a part needs
+//! whole faces that are each other's images (section IV.D validates faces, not areas), for large flat or round faces
+//! overlap their images by accident: a hub alone, a third of a propeller, agrees with every plane through its axis.
 
 use rustc_hash::FxHashMap;
 
@@ -26,6 +30,45 @@ pub(super) fn add(merger: &Merger, planes: &mut [SymmetryPlane]) -> Result<(), C
         (plane.pairs, plane.selfs) = step_faces(merger, &plane.plane, &faces);
     }
     Ok(())
+}
+
+/// Drops the planes below `near_global` (by more than `doubt`) for which too few faces speak. The pool is sorted, best
+/// first; planes beyond the bound on planes times faces are not looked at and go.
+pub(super) fn keep_confirmed(merger: &Merger, pool: &mut Vec<SymmetryPlane>, doubt: f64) -> Result<(), Cancelled> {
+    let (options, best) = (merger.options, pool.first().map_or(0.0, |p| p.coverage));
+    // While one plane is beyond doubt, most of the others fall behind it; those that stay are looked at in the end.
+    let limit = if doubt > 0.0 && best >= options.near_global + doubt { 0.0 } else { options.near_global - doubt };
+    let mut room = (options.evidence / merger.outlines.len().max(1)).max(1);
+    let look_up = validate::Options { face_samples: SAMPLES, ..validate::Options::default() };
+    let mut samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, &look_up, SAMPLES);
+    let grid = Grid::of(merger);
+    let mut kept = Vec::new();
+    for plane in pool.drain(..) {
+        merger.cancel.check()?;
+        if plane.coverage >= limit {
+            kept.push(plane);
+        } else if room > 0 {
+            room -= 1;
+            let faces = images(merger, &plane.plane, &grid, &mut samples);
+            if is_confirmed(merger, &plane, &faces) {
+                kept.push(plane);
+            }
+        }
+    }
+    *pool = kept;
+    Ok(())
+}
+
+/// Whether the faces that the plane maps onto faces make up enough of what it maps onto the surface. A single pair of
+/// congruent faces always has a plane, and a face that turns about an axis has every plane through it: neither counts.
+fn is_confirmed(merger: &Merger, plane: &SymmetryPlane, faces: &[(u32, u32)]) -> bool {
+    let outline = |i: u32| &merger.outlines[i as usize];
+    let of_two: f64 = faces.iter().filter(|(a, b)| a != b).map(|&(a, b)| outline(a).area + outline(b).area).sum();
+    let alone = faces.iter().filter(|(a, b)| a == b && outline(*a).axis.is_none());
+    let area = of_two + alone.map(|&(a, _)| outline(a).area).sum::<f64>();
+    let pairs = faces.iter().filter(|(a, b)| a != b).count();
+    let needed = (merger.options.confirmed * plane.coverage).max(merger.options.partial);
+    pairs >= 2 && area >= needed * merger.parsed.measures.area
 }
 
 /// Outlines by where their centroids are.

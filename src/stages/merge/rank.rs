@@ -17,10 +17,35 @@ pub(super) fn ordered(merger: &Merger, mut pool: Vec<SymmetryPlane>) -> Vec<Symm
     let best = pool.first().map_or(0.0, |p| p.coverage);
     let tied = |p: &SymmetryPlane| p.coverage >= best - merger.options.tie;
     pool.retain(|p| tied(p) || !matches!(p.source, Source::Principal | Source::Axes));
+    let copies: Vec<_> = pool.iter().map(|p| is_copy(merger, p, &pool)).collect();
+    let mut copies = copies.into_iter();
+    pool.retain(|_| !copies.next().unwrap_or(false));
     let rest = pool.split_off(pool.partition_point(tied));
     let mut ordered = settled(merger, pool);
     ordered.extend(rest);
     ordered
+}
+
+/// Planes at a larger angle (radians) are never one: they meet again in half a turn of 60.
+const COPY_ANGLE: f64 = 0.05;
+
+/// Whether a plane of a more reliable source does the same to the surface, as far as support can tell: on a slender
+/// body a plane may turn about the long axis by a degree. Sources without corners are not exact.
+fn is_copy(merger: &Merger, plane: &SymmetryPlane, pool: &[SymmetryPlane]) -> bool {
+    let field = &merger.validated.field;
+    let samples = field.samples(Round::Coarse);
+    let apart = |other: &SymmetryPlane| {
+        let gap = |s: &crate::brep::sample::Sample| {
+            (plane.plane.reflect(&s.point) - other.plane.reflect(&s.point)).norm_squared()
+        };
+        (samples.iter().map(gap).sum::<f64>() / samples.len().max(1) as f64).sqrt()
+    };
+    pool.iter().any(|other| {
+        other.source < plane.source
+            && other.coverage >= plane.coverage - merger.options.tie
+            && other.plane.angle_to(&plane.plane) <= COPY_ANGLE
+            && apart(other) <= field.radius()
+    })
 }
 
 /// Orders planes of equal support.

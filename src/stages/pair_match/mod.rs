@@ -115,6 +115,11 @@ impl FacePair {
         }
     }
 
+    /// Whether the two are different faces.
+    pub fn is_of_two(&self) -> bool {
+        self.faces[0] != self.faces[1]
+    }
+
     /// The order of the corners; `None` where only centroids correspond.
     pub fn order(&self) -> Option<Order> {
         match &self.correspondence {

@@ -94,12 +94,26 @@ impl SurfaceField {
     /// When cancelled.
     pub fn support(&self, isometry: &Isometry, round: Round, cancel: &Cancel) -> Result<f64, Cancelled> {
         let samples = self.samples(round);
+        Ok(self.hits(isometry, samples, cancel)? as f64 / samples.len().max(1) as f64)
+    }
+
+    /// The full support, where that of the middle round is known: its samples are not asked again.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn completed(&self, isometry: &Isometry, middle: f64, cancel: &Cancel) -> Result<f64, Cancelled> {
+        let (all, first) = (self.samples(Round::Full), self.rounds[Round::Middle as usize]);
+        let known = (middle * first as f64).round() as usize;
+        Ok((known + self.hits(isometry, &all[first..], cancel)?) as f64 / all.len().max(1) as f64)
+    }
+
+    fn hits(&self, isometry: &Isometry, samples: &[Sample], cancel: &Cancel) -> Result<usize, Cancelled> {
         let mut hits = 0;
         for chunk in samples.chunks(4096) {
             cancel.check()?;
             hits += chunk.iter().filter(|s| self.maps(isometry, s)).count();
         }
-        Ok(hits as f64 / samples.len().max(1) as f64)
+        Ok(hits)
     }
 
     /// The coarse support, or `None` as soon as it is (with three standard deviations) below `needed`.
