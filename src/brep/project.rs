@@ -81,8 +81,12 @@ impl Samples {
             cells[longer] = cells[longer].div_ceil(2);
         }
         let [nu, nv] = cells;
-        let at = |from: f64, to: f64, i: usize, n: usize| from + (to - from) * i as f64 / n as f64;
-        let uv = (0..=nu).flat_map(|i| (0..=nv).map(move |j| [at(u0, u1, i, nu), at(v0, v1, j, nv)]));
+        let [mut us, mut vs] = [(u0, u1, nu), (v0, v1, nv)]
+            .map(|(from, to, n)| (0..=n).map(|i| from + (to - from) * i as f64 / n as f64).collect::<Vec<_>>());
+        let size = (surface.point(u0, v0) - surface.point(0.5 * (u0 + u1), 0.5 * (v0 + v1))).norm();
+        leave_poles(&mut us, &vs, size, |u, v| surface.point(u, v));
+        leave_poles(&mut vs, &us, size, |v, u| surface.point(u, v));
+        let uv = us.iter().flat_map(|&u| vs.iter().map(move |&v| [u, v]));
         Self { columns: nv + 1, nodes: uv.map(|uv| (uv, surface.point(uv[0], uv[1]))).collect() }
     }
 
@@ -101,6 +105,18 @@ impl Samples {
         minima.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
         minima.truncate(count);
         minima.into_iter().map(|i| self.nodes[i].0).collect()
+    }
+}
+
+/// Moves the first and the last line off a side that has shrunk to a point: there the surface does not move with the
+/// other parameter, and an iteration that starts with a wrong one stays.
+fn leave_poles(lines: &mut [f64], across: &[f64], size: f64, at: impl Fn(f64, f64) -> Point) {
+    let shrunk = |line: f64| across.iter().all(|&t| (at(line, t) - at(line, across[0])).norm() <= 1e-6 * size);
+    let n = lines.len();
+    for (side, next) in [(0, 1), (n - 1, n - 2)] {
+        if shrunk(lines[side]) {
+            lines[side] += 0.25 * (lines[next] - lines[side]);
+        }
     }
 }
 
@@ -250,4 +266,31 @@ fn best_by(curve: &Curve, size: &impl Fn(f64) -> f64) -> f64 {
         }
     }
     best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::nurbs::NurbsSurface;
+
+    #[test]
+    fn points_near_a_collapsed_side_are_found() {
+        // u times a parabola from (-1, 0) to (1, 0): the side u = 0 is one point.
+        let arc = [[-1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [1.0, 0.0, 0.0]].map(Point::from);
+        let fan = NurbsSurface {
+            degree_u: 1,
+            degree_v: 2,
+            knots_u: vec![0.0, 0.0, 1.0, 1.0],
+            knots_v: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            columns: 3,
+            points: [Point::origin(); 3].into_iter().chain(arc).collect(),
+            weights: vec![],
+        };
+        let fan = Surface::Nurbs(fan);
+        for end in [-1.0, 1.0] {
+            let p = Point::new(0.02 * end, 0.0, 0.0);
+            let [u, v] = fan.project(&p, None).unwrap();
+            assert!((u - 0.02).abs() < 1e-9 && (v - 0.5 - 0.5 * end).abs() < 1e-9, "{u} {v}");
+        }
+    }
 }
