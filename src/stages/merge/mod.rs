@@ -199,7 +199,8 @@ impl Merger<'_> {
     fn pool(&self, axes: &[Axis]) -> Result<Vec<SymmetryPlane>, Cancelled> {
         let mut pool: Vec<_> = self.validated.planes.iter().map(|p| self.refitted(p)).collect();
         revolution::restrict(self, axes, &mut pool)?;
-        if self.options.principal {
+        // A body of revolution leaves its principal axes across open, and has its planes already.
+        if self.options.principal && axes.is_empty() {
             pool.extend(principal::planes(self, &pool)?);
         }
         let mut index = self.index();
