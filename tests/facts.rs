@@ -1,7 +1,7 @@
 //! Reading against OpenCASCADE's figures, where the real files are on the machine.
 //!
-//! `SYMALIGN_DATA` is the folder that `facts.csv`'s paths start in (unset: `/work/data`), `SYMALIGN_FACTS` the table
-//! (unset: `../shared/data/facts.csv`). Without them the test says so and passes.
+//! `SYMALIGN_DATA` is the folder that `facts.csv`'s paths start in, `SYMALIGN_FACTS` the table (unset:
+//! `../shared/data/facts.csv`). Without them the test says so and passes.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -10,8 +10,15 @@ use symalign::brep::Model;
 use symalign::cancel::Cancel;
 use symalign::stages::parse;
 
-fn folder(variable: &str, otherwise: &str) -> PathBuf {
-    std::env::var_os(variable).map_or_else(|| otherwise.into(), PathBuf::from)
+/// The folder of the real files, if there is one.
+fn data() -> Option<PathBuf> {
+    std::env::var_os("SYMALIGN_DATA").map(PathBuf::from).filter(|folder| folder.is_dir())
+}
+
+/// The table of facts, if there is one.
+fn facts() -> Option<PathBuf> {
+    let otherwise = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/facts.csv").into();
+    Some(std::env::var_os("SYMALIGN_FACTS").map_or(otherwise, PathBuf::from)).filter(|table| table.is_file())
 }
 
 fn placed_faces(model: &Model) -> usize {
@@ -24,12 +31,11 @@ fn solids(model: &Model) -> usize {
 
 #[test]
 fn faces_and_solids_are_those_of_opencascade() {
-    let data = folder("SYMALIGN_DATA", "/work/data");
-    let facts = folder("SYMALIGN_FACTS", concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/facts.csv"));
-    let Some(mut reader) = csv::Reader::from_path(&facts).ok().filter(|_| data.is_dir()) else {
-        eprintln!("skipped: no {} or {}", facts.display(), data.display());
+    let (Some(data), Some(facts)) = (data(), facts()) else {
+        eprintln!("skipped: set SYMALIGN_DATA to the folder with the real files, and SYMALIGN_FACTS to facts.csv");
         return;
     };
+    let mut reader = csv::Reader::from_path(&facts).expect("the table of facts opens");
     let (mut files, mut equal, mut bytes_read, mut seconds) = (0_usize, 0_usize, 0_usize, 0.0);
     for row in reader.deserialize() {
         let row: std::collections::HashMap<String, String> = row.expect("facts.csv is a table");
@@ -54,11 +60,10 @@ fn faces_and_solids_are_those_of_opencascade() {
 
 #[test]
 fn malformed_files_end_with_a_result_or_a_reason() {
-    let data = folder("SYMALIGN_DATA", "/work/data").join("hostile");
-    if !data.is_dir() {
-        eprintln!("skipped: no {}", data.display());
+    let Some(data) = data().map(|folder| folder.join("hostile")).filter(|folder| folder.is_dir()) else {
+        eprintln!("skipped: set SYMALIGN_DATA to the folder with the broken files");
         return;
-    }
+    };
     for entry in walkdir::WalkDir::new(&data).sort_by_file_name().into_iter().flatten() {
         let path = entry.path();
         let Some(bytes) = path.extension().filter(|e| *e != "csv").and_then(|_| std::fs::read(path).ok()) else {
