@@ -206,6 +206,16 @@ fn distinct(knots: &[f64]) -> impl Iterator<Item = f64> + '_ {
 }
 
 #[cfg(test)]
+impl NurbsSurface {
+    /// The patch over the unit square with these corners at (u, v) = (0, 0), (0, 1), (1, 0), (1, 1).
+    pub(super) fn bilinear(corners: Vec<Point>) -> Self {
+        let knots = vec![0.0, 0.0, 1.0, 1.0];
+        let (knots_u, knots_v) = (knots.clone(), knots);
+        Self { degree_u: 1, degree_v: 1, knots_u, knots_v, columns: 2, points: corners, weights: vec![] }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -252,16 +262,7 @@ mod tests {
     #[test]
     fn a_bilinear_patch_has_its_corners_and_twist() {
         let points = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]].map(Point::from).to_vec();
-        let knots = vec![0.0, 0.0, 1.0, 1.0];
-        let surface = NurbsSurface {
-            degree_u: 1,
-            degree_v: 1,
-            knots_u: knots.clone(),
-            knots_v: knots,
-            columns: 2,
-            points,
-            weights: vec![],
-        };
+        let surface = NurbsSurface::bilinear(points);
         let jet = surface.jet(0.5, 0.5);
         assert_eq!(jet.point, Point::new(0.5, 0.5, 0.25));
         assert_eq!(jet.du, Vector::new(1.0, 0.0, 0.5));

@@ -1,6 +1,6 @@
-//! What edges and faces say about themselves: where an edge begins and ends on its curve, its tangents, seams.
+//! What edges say about themselves: where an edge begins and ends on its curve, its tangents.
 
-use super::{Curve, EdgeId, EdgeUse, Face, Model};
+use super::{Curve, EdgeId, EdgeUse, Model};
 use crate::geometry::{Point, Vector};
 
 /// Points this near, as a share of the size of the curve, are the same point.
@@ -64,14 +64,6 @@ impl Model {
         let period = curve.period();
         let far = |share: f64| (curve.point(curve.wrap(from + share * (to - from), period)) - start).norm() > tolerance;
         !far(0.5) && !far(0.3)
-    }
-}
-
-impl Face {
-    /// Whether the face uses the edge twice, once in each direction: a seam, inside the face and not of its border.
-    pub fn is_seam(&self, edge: EdgeId) -> bool {
-        let uses = || self.loops.iter().flat_map(|l| &l.uses).filter(|u| u.edge == edge);
-        uses().any(|u| u.forward) && uses().any(|u| !u.forward)
     }
 }
 

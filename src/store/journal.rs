@@ -5,7 +5,6 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::Read;
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
@@ -271,14 +270,6 @@ fn checksum(record: &[u8]) -> u32 {
     hasher.finalize()
 }
 
-/// The bytes of a whole file: for tests and for reading small files with their path in the error.
-pub fn read_all(path: &Path) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let opened = File::open(path).and_then(|mut file| file.read_to_end(&mut bytes));
-    opened.map_err(|e| RunError::file(path, e))?;
-    Ok(bytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -317,7 +308,7 @@ mod tests {
     fn a_tail_torn_at_any_byte_is_cut_off() {
         let dir = tempfile::tempdir().unwrap();
         let path = journal(dir.path());
-        let whole = read_all(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
         let head = 2 * (HEAD + 5);
         let record = (whole.len() - head) / 3;
         for length in 0..whole.len() {
@@ -330,7 +321,7 @@ mod tests {
             assert_eq!((journal.len(), journal.damage().len()), (records, 0), "at {length}");
             drop(journal);
             let kept = if length < head { HEAD + 5 } else { head + records * record };
-            assert_eq!(read_all(&path).unwrap(), whole[..kept]);
+            assert_eq!(std::fs::read(&path).unwrap(), whole[..kept]);
         }
     }
 
@@ -338,7 +329,7 @@ mod tests {
     fn a_flipped_bit_costs_one_record_only() {
         let dir = tempfile::tempdir().unwrap();
         let path = journal(dir.path());
-        let whole = read_all(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
         let head = 2 * (HEAD + 5);
         let record = (whole.len() - head) / 3;
         let second = head + record..head + 2 * record;
@@ -355,7 +346,7 @@ mod tests {
     fn one_damaged_copy_of_the_settings_loses_nothing() {
         let dir = tempfile::tempdir().unwrap();
         let path = journal(dir.path());
-        let whole = read_all(&path).unwrap();
+        let whole = std::fs::read(&path).unwrap();
         for copy in [0, HEAD + 5] {
             let mut bytes = whole.clone();
             bytes[copy + HEAD] ^= 1;

@@ -1,8 +1,10 @@
 //! The loops of a face -> closed paths in its parameter space.
 
+use rustc_hash::FxHashMap;
+
 use super::chart::{Chart, Uv};
 use super::edges::EdgeLines;
-use crate::brep::{EdgeUse, Face};
+use crate::brep::{EdgeId, EdgeUse, Face};
 use crate::geometry::{Point, Point2, polygon};
 
 /// A closed path in parameter space, unwrapped: it may leave the domain of a periodic surface.
@@ -74,10 +76,12 @@ pub(super) fn polylines(face: &Face, lines: &EdgeLines, degenerate: &[bool]) -> 
 fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>) {
     let mut open = vec![uses];
     while let Some(chain) = open.pop() {
-        let pair = (0..chain.len()).find_map(|i| {
-            let back = |j: &usize| chain[*j].edge == chain[i].edge && chain[*j].forward != chain[i].forward;
-            (i + 1..chain.len()).find(back).map(|j| (i, j))
+        let mut first: FxHashMap<(EdgeId, bool), usize> = FxHashMap::default();
+        let pairs = chain.iter().enumerate().filter_map(|(j, u)| {
+            first.entry((u.edge, u.forward)).or_insert(j);
+            first.get(&(u.edge, !u.forward)).map(|&i| (i, j))
         });
+        let pair = pairs.min();
         match pair {
             Some((i, j)) => {
                 open.push(chain[i + 1..j].to_vec());

@@ -274,20 +274,7 @@ fn an_octant_of_a_sphere_has_an_eighth_of_its_area() {
 fn a_bilinear_patch_without_bounds_uses_its_domain() {
     let mut b = Builder::new();
     let points = [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [3.0, 0.0, 0.0], [3.0, 2.0, 0.0]].map(Point::from).to_vec();
-    let knots = vec![0.0, 0.0, 1.0, 1.0];
-    b.face(
-        Surface::Nurbs(NurbsSurface {
-            degree_u: 1,
-            degree_v: 1,
-            knots_u: knots.clone(),
-            knots_v: knots,
-            columns: 2,
-            points,
-            weights: vec![],
-        }),
-        true,
-        &[],
-    );
+    b.face(Surface::Nurbs(NurbsSurface::bilinear(points)), true, &[]);
     let (mesh, skipped, _) = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap();
     assert!(skipped.is_empty());
     assert!((mesh.faces[0].area - 6.0).abs() < 1e-9);
