@@ -46,11 +46,11 @@ fn faces_and_solids_are_those_of_opencascade() {
         bytes_read += bytes.len();
         files += 1;
         let expected = (row["faces"].clone(), row["solids"].clone());
-        let got = read.as_ref().map(|(model, ..)| (placed_faces(model).to_string(), solids(model).to_string()));
+        let got = read.as_ref().map(|r| (placed_faces(&r.model).to_string(), solids(&r.model).to_string()));
         if got.as_ref() == Ok(&expected) {
             equal += 1;
         } else {
-            let skipped = read.as_ref().map_or_else(|e| e.to_string(), |(_, skipped, _)| format!("{skipped:?}"));
+            let skipped = read.as_ref().map_or_else(|e| e.to_string(), |r| format!("{:?}", r.skipped));
             eprintln!("{}: faces, solids {got:?}, expected {expected:?}: {skipped:.300}", row["path"]);
         }
     }
@@ -70,7 +70,7 @@ fn malformed_files_end_with_a_result_or_a_reason() {
             continue;
         };
         match parse::read(&bytes, &parse::Options::default(), &Cancel::new()) {
-            Ok((model, skipped, warnings)) => {
+            Ok(parse::Reading { model, skipped, warnings }) => {
                 let (faces, solids) = (placed_faces(&model), solids(&model));
                 eprintln!(
                     "{}: {faces} faces, {solids} solids, skipped {skipped:.200?}, {warnings:.200?}",

@@ -52,7 +52,8 @@ fn read_facts(table: &Path) -> Vec<Facts> {
 fn measures_of(path: &Path) -> Result<(usize, Measures), String> {
     let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
     let cancel = Cancel::new();
-    let (model, ..) = parse::read(&bytes, &parse::Options::default(), &cancel).map_err(|e| e.to_string())?;
+    let parse::Reading { model, .. } =
+        parse::read(&bytes, &parse::Options::default(), &cancel).map_err(|e| e.to_string())?;
     let (mesh, ..) = tessellate(&model, &Options::default(), &cancel).map_err(|e| e.to_string())?;
     Ok((mesh.faces.len(), measure(&model, &mesh)))
 }

@@ -50,7 +50,7 @@ fn kind(model: &Model, face: &MeshFace) -> String {
 fn offences(path: &Path) -> Vec<String> {
     let Ok(bytes) = std::fs::read(path) else { return vec!["cannot be opened".to_owned()] };
     let cancel = Cancel::new();
-    let Ok((model, ..)) = parse::read(&bytes, &parse::Options::default(), &cancel) else {
+    let Ok(parse::Reading { model, .. }) = parse::read(&bytes, &parse::Options::default(), &cancel) else {
         return vec!["cannot be read".to_owned()];
     };
     let (mesh, skipped, _) = tessellate(&model, &Options::default(), &cancel).expect("nobody cancels");

@@ -1,6 +1,6 @@
 //! What was left out or mended while reading.
 
-use super::records::Fault;
+use super::fault::Fault;
 use crate::brep::Skipped;
 
 /// More warnings than this are only counted.

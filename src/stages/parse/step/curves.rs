@@ -3,10 +3,11 @@
 use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Fault, Read, Record};
+use super::records::Record;
 use super::splines;
 use crate::brep::Curve;
 use crate::geometry::Point;
+use crate::stages::parse::fault::{Fault, Read};
 
 /// How deep curves may be made of curves.
 const DEEPEST_CURVE: u32 = 16;

@@ -7,11 +7,12 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::bodies::BodyKind;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Fault, File, Read, Record};
+use super::records::{File, Record};
 use super::structure::{Relation, Structure};
 use super::units::{Units, units_of_context};
 use crate::cancel::Cancel;
 use crate::geometry::Transform;
+use crate::stages::parse::fault::{Fault, Read};
 
 /// How deep mapped items and products may be nested.
 pub(super) const DEEPEST_NESTING: usize = 64;

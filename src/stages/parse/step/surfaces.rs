@@ -3,9 +3,10 @@
 use super::curves::parameter_unit;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Fault, Read, Record};
+use super::records::Record;
 use super::splines;
 use crate::brep::{Curve, Surface};
+use crate::stages::parse::fault::{Fault, Read};
 
 /// How deep surfaces may be made of surfaces.
 const DEEPEST_SURFACE: u32 = 16;

@@ -16,7 +16,7 @@ pub(super) fn schema(file: &File) -> String {
 mod tests {
     use super::*;
     use crate::cancel::Cancel;
-    use crate::stages::parse::lexer::scan;
+    use crate::stages::parse::step::lexer::scan;
 
     #[test]
     fn the_schema_name_comes_without_its_identifier() {

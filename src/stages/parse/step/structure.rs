@@ -3,7 +3,8 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::keyword::Kind;
-use super::records::{File, Read, Record};
+use super::records::{File, Record};
+use crate::stages::parse::fault::Read;
 
 /// A relation between two representations.
 #[derive(Clone, Copy, Debug)]

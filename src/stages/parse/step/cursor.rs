@@ -6,7 +6,7 @@ use memchr::memchr;
 
 use super::keyword::Kind;
 use super::lexer::{kind_at, number, skip_space};
-use super::records::{Fault, Read};
+use crate::stages::parse::fault::{Fault, Read};
 
 /// A place in the parameters of an instance; each call reads one parameter and the comma behind it.
 #[derive(Clone, Debug)]
@@ -316,8 +316,8 @@ impl<'a, 'r> Cursor<'a, 'r> {
 mod tests {
     use super::*;
     use crate::cancel::Cancel;
-    use crate::stages::parse::lexer::scan;
-    use crate::stages::parse::records::File;
+    use crate::stages::parse::step::lexer::scan;
+    use crate::stages::parse::step::records::File;
 
     fn with(text: &str, check: impl Fn(&File)) {
         let table = scan(text.as_bytes(), &Cancel::new()).unwrap();

@@ -1,10 +1,11 @@
 //! Shells and bodies: the items of a shape representation -> the bodies of a model.
 
 use super::keyword::Kind;
-use super::records::{Fault, Read, Record};
+use super::records::Record;
 use super::topology::{Builder, LooseFace};
 use crate::brep::{Body, BodyId, FaceId, Shell};
 use crate::cancel::{Cancel, Cancelled};
+use crate::stages::parse::fault::{Fault, Read};
 
 const SOLID: &[Kind] = &[Kind::RepresentationItem, Kind::ManifoldSolidBrep, Kind::BrepWithVoids];
 const SHELL: &[Kind] = &[Kind::RepresentationItem, Kind::ConnectedFaceSet];

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::cursor::Cursor;
 use super::keyword::Kind;
-use super::records::{Fault, Read, Record};
+use super::records::Record;
 use super::topology::{Builder, LooseFace};
 use crate::brep::{FaceGeometry, Facets};
 use crate::geometry::Point;
+use crate::stages::parse::fault::{Fault, Read};
 
 impl Builder<'_> {
     /// The faces of a tessellated item: one for each of its triangulated parts.

@@ -1,7 +1,8 @@
 //! Units of a representation: millimetres in its length unit, radians in its angle unit.
 
 use super::keyword::Kind;
-use super::records::{File, Read, Record};
+use super::records::{File, Record};
+use crate::stages::parse::fault::Read;
 
 /// How often a conversion-based unit may rest on another one.
 const DEEPEST_CONVERSION: usize = 8;
@@ -120,7 +121,7 @@ fn prefix(name: &[u8]) -> f64 {
 mod tests {
     use super::*;
     use crate::cancel::Cancel;
-    use crate::stages::parse::lexer::scan;
+    use crate::stages::parse::step::lexer::scan;
 
     fn units(text: &str) -> Units {
         let table = scan(text.as_bytes(), &Cancel::new()).unwrap();

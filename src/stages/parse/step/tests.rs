@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::Point;
+use crate::stages::parse::parse;
 
 /// A tetrahedron as a faceted B-rep, with corners at the origin and one unit along each axis, in units of metres.
 const TETRAHEDRON: &str = "
@@ -37,14 +38,14 @@ const ASSEMBLY: &str = "
 #134=ITEM_DEFINED_TRANSFORMATION('','',#111,#60);
 ";
 
-fn read_text(data: &str) -> Result<(Model, Vec<Skipped>, Vec<String>), ModelError> {
+fn read_text(data: &str) -> Result<Reading, ModelError> {
     let text = format!("ISO-10303-21;DATA;{data}ENDSEC;END-ISO-10303-21;");
     read(text.as_bytes(), &Options::default(), &Cancel::new())
 }
 
 #[test]
 fn a_faceted_tetrahedron_shares_its_edges() {
-    let (model, skipped, warnings) = read_text(TETRAHEDRON).unwrap();
+    let Reading { model, skipped, warnings } = read_text(TETRAHEDRON).unwrap();
     assert_eq!((model.vertices.len(), model.edges.len(), model.faces.len()), (4, 6, 4));
     assert_eq!((model.bodies[0].solid, model.shells[0].closed, model.occurrences.len()), (true, true, 1));
     assert_eq!((model.unit_mm, model.vertices[1].point.coords.norm()), (1000.0, 1000.0));
@@ -62,7 +63,7 @@ fn a_parsed_tetrahedron_has_its_area_and_volume() {
 
 #[test]
 fn parts_are_placed_whichever_way_the_relation_is_written() {
-    let (model, skipped, _) = read_text(&format!("{TETRAHEDRON}{ASSEMBLY}")).unwrap();
+    let Reading { model, skipped, .. } = read_text(&format!("{TETRAHEDRON}{ASSEMBLY}")).unwrap();
     assert!(skipped.is_empty(), "{skipped:?}");
     assert_eq!(model.bodies.len(), 1);
     let placed: Vec<_> =
@@ -74,7 +75,7 @@ fn parts_are_placed_whichever_way_the_relation_is_written() {
 fn a_product_in_itself_costs_only_that_branch() {
     let cycle = "#140=NEXT_ASSEMBLY_USAGE_OCCURRENCE('3','','',#70,#100,$);#150=PRODUCT_DEFINITION('','',#99,#99);
         #151=NEXT_ASSEMBLY_USAGE_OCCURRENCE('4','','',#150,#100,$);";
-    let (model, skipped, _) = read_text(&format!("{TETRAHEDRON}{ASSEMBLY}{cycle}")).unwrap();
+    let Reading { model, skipped, .. } = read_text(&format!("{TETRAHEDRON}{ASSEMBLY}{cycle}")).unwrap();
     assert_eq!(model.occurrences.len(), 2);
     assert!(skipped.iter().all(|s| s.entity == 140 && s.why.contains("part of itself")), "{skipped:?}");
 }
@@ -86,7 +87,7 @@ fn a_mapped_item_places_what_it_maps() {
         #205=MAPPED_ITEM('',#206,#110);#206=REPRESENTATION_MAP(#110,#204);
         #108=CARTESIAN_POINT('',(5.,0.,0.));#109=CARTESIAN_POINT('',(0.,7.,0.));#110=AXIS2_PLACEMENT_3D('',#108,$,$);";
     let without_product = TETRAHEDRON.replace("#72=SHAPE_DEFINITION_REPRESENTATION(#71,#61);", "");
-    let (model, skipped, _) = read_text(&format!("{without_product}{mapped}")).unwrap();
+    let Reading { model, skipped, .. } = read_text(&format!("{without_product}{mapped}")).unwrap();
     let ends: Vec<_> = model.occurrences.iter().map(|o| o.placement.point(&Point::new(1.0, 0.0, 0.0))).collect();
     assert_eq!(ends, [Point::new(6.0, 0.0, 0.0), Point::new(2.0, 7.0, 0.0)]);
     assert_eq!(skipped[0].entity, 205);
@@ -94,7 +95,8 @@ fn a_mapped_item_places_what_it_maps() {
 
 #[test]
 fn a_broken_face_is_skipped_with_its_number() {
-    let (model, skipped, _) = read_text(&TETRAHEDRON.replace("#33=FACE('',(#23));", "#33=FACE('',(#999));")).unwrap();
+    let Reading { model, skipped, .. } =
+        read_text(&TETRAHEDRON.replace("#33=FACE('',(#23));", "#33=FACE('',(#999));")).unwrap();
     assert_eq!(model.faces.len(), 3);
     assert_eq!(skipped, [Skipped { entity: 33, why: "#999: there is no such instance".into() }]);
 }
@@ -116,7 +118,7 @@ proptest! {
         let length = bytes.len();
         changes.into_iter().for_each(|(at, value)| bytes[at % length] = value);
         bytes.truncate(length - cut % length / 4);
-        if let Ok((model, ..)) = read(&bytes, &Options::default(), &Cancel::new()) {
+        if let Ok(Reading { model, .. }) = read(&bytes, &Options::default(), &Cancel::new()) {
             prop_assert!(!model.occurrences.is_empty());
         }
     }
@@ -127,7 +129,7 @@ proptest! {
         for (from, to) in swaps {
             text = text.replace(&format!("#{from},"), &format!("#{to},")).replace(&format!("#{from})"), &format!("#{to})"));
         }
-        if let Ok((model, ..)) = read(text.as_bytes(), &Options::default(), &Cancel::new()) {
+        if let Ok(Reading { model, .. }) = read(text.as_bytes(), &Options::default(), &Cancel::new()) {
             prop_assert!(!model.occurrences.is_empty());
         }
     }

@@ -3,9 +3,10 @@
 use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::placement::Geometry;
-use super::records::{Read, Record};
+use super::records::Record;
 use crate::brep::nurbs::{NurbsCurve, NurbsSurface};
 use crate::geometry::Point;
+use crate::stages::parse::fault::Read;
 
 /// The highest degree: that of OpenCASCADE, and far above any in use.
 const HIGHEST_DEGREE: usize = 25;
@@ -177,9 +178,10 @@ fn written_out(record: &Record, counts: &[f64], values: &[f64], degree: usize, p
 mod tests {
     use super::*;
     use crate::cancel::Cancel;
-    use crate::stages::parse::lexer::scan;
-    use crate::stages::parse::records::{Fault, File};
-    use crate::stages::parse::units::Units;
+    use crate::stages::parse::fault::Fault;
+    use crate::stages::parse::step::lexer::scan;
+    use crate::stages::parse::step::records::File;
+    use crate::stages::parse::step::units::Units;
 
     fn read(spline: &str) -> Result<NurbsCurve, Fault> {
         let text = format!(

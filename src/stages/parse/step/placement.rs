@@ -3,10 +3,11 @@
 use std::cell::Cell;
 
 use super::keyword::Kind;
-use super::records::{Fault, File, Read};
+use super::records::File;
 use super::units::Units;
 use crate::brep::Placement;
 use crate::geometry::{Point, Transform, Vector, any_perpendicular};
+use crate::stages::parse::fault::{Fault, Read};
 
 /// Decodes geometry in the units of one representation.
 #[derive(Clone)]

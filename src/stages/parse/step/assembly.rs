@@ -4,11 +4,12 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::bodies::BodyKind;
 use super::keyword::Kind;
-use super::records::{Fault, File, Read};
+use super::records::File;
 use super::representation::{DEEPEST_NESTING, Placed, Representations};
 use super::structure::{Structure, Usage, structure};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Transform;
+use crate::stages::parse::fault::{Fault, Read};
 
 /// The items to build and place, and the branches that were left out.
 pub(super) struct Assembly {

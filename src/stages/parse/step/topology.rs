@@ -5,12 +5,13 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::keyword::Kind;
-use super::notes::Notes;
 use super::placement::{Geometry, orthonormal};
-use super::records::{Fault, Read, Record};
+use super::records::Record;
 use super::units::Units;
 use crate::brep::{Curve, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceLoop, Model, Surface, Vertex, VertexId};
 use crate::geometry::{Point, Vector};
+use crate::stages::parse::fault::{Fault, Read};
+use crate::stages::parse::notes::Notes;
 
 /// How deep oriented edges and faces may refer to others.
 const DEEPEST_ORIENTED: u32 = 8;

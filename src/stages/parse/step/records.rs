@@ -5,22 +5,7 @@ use std::borrow::Cow;
 use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::lexer::{Entry, Table, kind_at, skip_space};
-
-/// Why one entity could not be read.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fault {
-    pub entity: u64,
-    pub why: Cow<'static, str>,
-}
-
-impl Fault {
-    pub fn new(entity: u64, why: impl Into<Cow<'static, str>>) -> Self {
-        Self { entity, why: why.into() }
-    }
-}
-
-/// The result of reading one entity.
-pub(super) type Read<T> = Result<T, Fault>;
+use crate::stages::parse::fault::{Fault, Read};
 
 /// The bytes of a file with the table of its instances.
 #[derive(Clone, Copy)]
