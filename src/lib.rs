@@ -5,7 +5,7 @@
 //! paper"). The method is told in [`stages`], stage by stage; where the files and threads are, in `ARCHITECTURE.md`.
 //!
 //! ```text
-//! STEP bytes -> B-rep, mesh -> corners -> pairs -> isometries -> validated -> dominant symmetry -> frame -> descriptor
+//! CAD bytes -> B-rep, mesh -> corners -> pairs -> isometries -> validated -> dominant symmetry -> frame -> descriptor
 //! ```
 //!
 //! # Glossary

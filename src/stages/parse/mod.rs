@@ -1,13 +1,19 @@
 //! Stage 1: the bytes of a CAD file -> B-rep, mesh and measures.
 //!
-//! In: the bytes of a STEP file ([`step`]); what a file is, its first bytes say. Out: [`Parsed`].
+//! In: the bytes of a STEP file ([`step`]) or an OCCT `.brep` file ([`occt`]); what a file is, its first bytes say.
+//! Out: [`Parsed`].
 //!
 //! Method: a reader for each format makes the same [`Model`]; then the faces are tessellated and measured.
 //!
 //! Cost, and what it does not promise: as the readers say, and [`tessellate`].
 
+mod chains;
 mod fault;
+mod moved;
 mod notes;
+mod occt;
+mod on_surface;
+mod sound;
 mod step;
 
 use super::{ModelError, Stage};
@@ -86,5 +92,8 @@ pub fn parse(bytes: &[u8], options: &Options, pose: Option<&Isometry>, cancel: &
 /// # Errors
 /// Where the bytes are of no format that is read, hold no face that can be read, or pass a limit; and when cancelled.
 pub fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<Reading, ModelError> {
+    if occt::is_brep(bytes) {
+        return occt::read(bytes, options, cancel);
+    }
     step::read(bytes, options, cancel)
 }
