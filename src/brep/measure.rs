@@ -1,6 +1,6 @@
 //! Area, volume, centroid and bounding box of a model.
 
-use super::{Mesh, Model};
+use super::{FreeCurve, Mesh, Model};
 use crate::geometry::{Aabb, Point, Tolerance, Vector};
 
 /// What a model measures, in its own pose.
@@ -12,6 +12,7 @@ pub struct Measures {
     pub volume: f64,
     /// Area centroid.
     pub centroid: Point,
+    /// Box of the faces and of the free curves.
     pub bounds: Aabb,
     /// D = 2 max |p - centroid|.
     pub tolerance: Tolerance,
@@ -24,8 +25,20 @@ pub fn measure(model: &Model, mesh: &Mesh) -> Measures {
     let moment: Vector = mesh.faces.iter().map(|f| f.centroid.coords * f.area).sum();
     let centroid = if area > 0.0 { Point::from(moment / area) } else { Point::origin() };
     let farthest = mesh.points.iter().map(|p| (p - centroid).norm_squared()).fold(0.0, f64::max).sqrt();
-    let bounds = Aabb::of(&mesh.points);
+    let mut bounds = Aabb::of(&mesh.points);
+    model.free_curves.iter().flat_map(points_of).for_each(|p| bounds.add(&p));
     Measures { area, volume: volume(model, mesh), centroid, bounds, tolerance: Tolerance::of(2.0 * farthest) }
+}
+
+/// Points of a free curve, near enough for its box.
+fn points_of(free: &FreeCurve) -> impl Iterator<Item = Point> + '_ {
+    const PIECES: usize = 16;
+    let breaks = free.curve.breaks();
+    let inner = |pair: [f64; 2]| (1..=PIECES).map(move |i| pair[0] + (pair[1] - pair[0]) * i as f64 / PIECES as f64);
+    let first = free.curve.domain()[0];
+    let pairs: Vec<[f64; 2]> = breaks.windows(2).map(|w| [w[0], w[1]]).collect();
+    let parameters = std::iter::once(first).chain(pairs.into_iter().flat_map(inner));
+    parameters.map(|t| free.placement.point(&free.curve.point(t)))
 }
 
 /// The outer shell of each placed solid less its voids; the direction in which a file turns its shells is not trusted.

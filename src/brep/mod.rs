@@ -169,6 +169,15 @@ pub struct Occurrence {
     pub placement: Transform,
 }
 
+/// A bounded curve (or, as a polyline of one point, a point) that is the edge of no face.
+#[derive(Clone, Debug)]
+pub struct FreeCurve {
+    /// Number of the entity in the file.
+    pub entity: u64,
+    pub curve: Arc<Curve>,
+    pub placement: Transform,
+}
+
 /// Something that was left out while reading, with the reason.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Skipped {
@@ -190,6 +199,8 @@ pub struct Model {
     pub shells: Vec<Shell>,
     pub bodies: Vec<Body>,
     pub occurrences: Vec<Occurrence>,
+    /// Curves beside the faces: they count for the bounding box and nothing else.
+    pub free_curves: Vec<FreeCurve>,
 }
 
 impl Model {
@@ -204,13 +215,15 @@ impl Model {
             shells: Vec::new(),
             bodies: Vec::new(),
             occurrences: Vec::new(),
+            free_curves: Vec::new(),
         }
     }
 
-    /// The model after a rigid motion: only the occurrences change.
+    /// The model after a rigid motion: only the placements change.
     pub fn moved(mut self, by: &Isometry) -> Self {
-        for occurrence in &mut self.occurrences {
-            occurrence.placement = by.as_transform().after(&occurrence.placement);
+        let of_bodies = self.occurrences.iter_mut().map(|o| &mut o.placement);
+        for placement in of_bodies.chain(self.free_curves.iter_mut().map(|c| &mut c.placement)) {
+            *placement = by.as_transform().after(placement);
         }
         self
     }

@@ -35,26 +35,40 @@ pub struct NurbsSurface {
     pub weights: Vec<f64>,
 }
 
-/// The basis functions that do not vanish at a parameter, with two derivatives.
-struct Basis {
+/// The basis functions that do not vanish at a parameter, with two derivatives, for degrees below `N`: most splines
+/// are cubic, and clearing tables for the highest degree would cost more than filling them for theirs.
+struct Basis<const N: usize> {
     /// Index of the first control point they belong to.
     first: usize,
     /// `values[d][j]`: d-th derivative of the j-th of them.
-    values: [[f64; MAX_DEGREE + 1]; 3],
+    values: [[f64; N]; 3],
 }
 
-impl Basis {
-    /// At `t`, clamped to the domain. Needs `degree <= MAX_DEGREE` and `count + degree + 1` knots.
-    fn at(knots: &[f64], degree: usize, count: usize, t: f64) -> Self {
+/// Calls a method for up to the `order`-th derivatives with the smallest table that holds this degree.
+macro_rules! for_degree {
+    ($degree:expr, $order:literal, $self:ident.$method:ident($($argument:expr),*)) => {
+        match $degree {
+            0..=3 => $self.$method::<4, $order>($($argument),*),
+            4..=7 => $self.$method::<8, $order>($($argument),*),
+            _ => $self.$method::<{ MAX_DEGREE + 1 }, $order>($($argument),*),
+        }
+    };
+}
+
+impl<const N: usize> Basis<N> {
+    /// At `t`, clamped to the domain, with derivatives up to `ORDER`. Needs `degree < N` and `count + degree + 1` knots.
+    fn at<const ORDER: usize>(knots: &[f64], degree: usize, count: usize, t: f64) -> Self {
         let t = t.clamp(knots[degree], knots[count].max(knots[degree]));
         let inner = &knots[degree + 1..count];
         let span = degree + inner.partition_point(|&k| k <= t);
         let span = last_filled_span(knots, degree, span);
-        let mut values = [[0.0; MAX_DEGREE + 1]; 3];
+        let mut values = [[0.0; N]; 3];
         values[0][0] = 1.0;
         for q in 1..=degree {
-            if q + 1 >= degree {
+            if q + 1 >= degree && ORDER > 1 {
                 values[2] = differentiate(knots, span, q, &values[1]);
+            }
+            if q + ORDER > degree && ORDER > 0 {
                 values[1] = differentiate(knots, span, q, &values[0]);
             }
             raise(knots, span, q, t, &mut values[0]);
@@ -72,7 +86,7 @@ fn last_filled_span(knots: &[f64], degree: usize, mut span: usize) -> usize {
 }
 
 /// Basis functions of degree q - 1 -> degree q, in place.
-fn raise(knots: &[f64], span: usize, q: usize, t: f64, n: &mut [f64; MAX_DEGREE + 1]) {
+fn raise<const N: usize>(knots: &[f64], span: usize, q: usize, t: f64, n: &mut [f64; N]) {
     let mut saved = 0.0;
     for r in 0..q {
         let (low, high) = (knots[span + 1 + r - q], knots[span + 1 + r]);
@@ -84,8 +98,8 @@ fn raise(knots: &[f64], span: usize, q: usize, t: f64, n: &mut [f64; MAX_DEGREE 
 }
 
 /// Functions (or their derivatives) of degree q - 1 -> derivatives of those of degree q.
-fn differentiate(knots: &[f64], span: usize, q: usize, n: &[f64; MAX_DEGREE + 1]) -> [f64; MAX_DEGREE + 1] {
-    let mut out = [0.0; MAX_DEGREE + 1];
+fn differentiate<const N: usize>(knots: &[f64], span: usize, q: usize, n: &[f64; N]) -> [f64; N] {
+    let mut out = [0.0; N];
     for r in 0..q {
         let width = knots[span + 1 + r] - knots[span + 1 + r - q];
         let share = if width > 0.0 { q as f64 * n[r] / width } else { 0.0 };
@@ -125,7 +139,12 @@ impl NurbsCurve {
 
     /// Point, first and second derivative; `t` outside the domain is clamped.
     pub fn derivatives(&self, t: f64) -> [Vector; 3] {
-        let basis = Basis::at(&self.knots, self.degree, self.points.len(), t);
+        for_degree!(self.degree, 2, self.derivatives_below(t))
+    }
+
+    /// For degrees below `N`.
+    fn derivatives_below<const N: usize, const ORDER: usize>(&self, t: f64) -> [Vector; 3] {
+        let basis = Basis::<N>::at::<ORDER>(&self.knots, self.degree, self.points.len(), t);
         let mut sums = [Weighted::ZERO; 3];
         for j in 0..=self.degree {
             let i = basis.first + j;
@@ -158,34 +177,51 @@ impl NurbsSurface {
 
     /// Point and derivatives up to second order; parameters outside the domain are clamped.
     pub fn jet(&self, u: f64, v: f64) -> Jet {
-        let bu = Basis::at(&self.knots_u, self.degree_u, self.rows(), u);
-        let bv = Basis::at(&self.knots_v, self.degree_v, self.columns, v);
+        for_degree!(self.degree_u.max(self.degree_v), 2, self.jet_below(u, v))
+    }
+
+    /// As [`Self::jet`] without the second derivatives, which stay zero.
+    pub(super) fn tangents(&self, u: f64, v: f64) -> Jet {
+        for_degree!(self.degree_u.max(self.degree_v), 1, self.jet_below(u, v))
+    }
+
+    /// For degrees below `N`.
+    fn jet_below<const N: usize, const ORDER: usize>(&self, u: f64, v: f64) -> Jet {
+        let bu = Basis::<N>::at::<ORDER>(&self.knots_u, self.degree_u, self.rows(), u);
+        let bv = Basis::<N>::at::<ORDER>(&self.knots_v, self.degree_v, self.columns, v);
         // a: value, u, uu, v, uv, vv
         let mut a = [Weighted::ZERO; 6];
         for i in 0..=self.degree_u {
-            let row = self.row_sums(&bv, bu.first + i);
+            let row = self.row_sums::<N, ORDER>(&bv, bu.first + i);
             let [n, d, dd] = [bu.values[0][i], bu.values[1][i], bu.values[2][i]];
             a[0].add(n, &row[0]);
             a[1].add(d, &row[0]);
-            a[2].add(dd, &row[0]);
             a[3].add(n, &row[1]);
-            a[4].add(d, &row[1]);
-            a[5].add(n, &row[2]);
+            if ORDER > 1 {
+                a[2].add(dd, &row[0]);
+                a[4].add(d, &row[1]);
+                a[5].add(n, &row[2]);
+            }
         }
         let [p, du, duu] = divide(&a[0], &a[1], &a[2]);
         let [_, dv, dvv] = divide(&a[0], &a[3], &a[5]);
+        let point = Point::from(p);
+        if ORDER < 2 {
+            let zero = Vector::zeros();
+            return Jet { point, du, dv, duu: zero, duv: zero, dvv: zero };
+        }
         let duv = (a[4].0 - du * a[3].1 - dv * a[1].1 - p * a[4].1) / a[0].1;
-        Jet { point: Point::from(p), du, dv, duu, duv, dvv }
+        Jet { point, du, dv, duu, duv, dvv }
     }
 
     /// The sums along v of one row of control points: value, first, second derivative.
-    fn row_sums(&self, basis: &Basis, row: usize) -> [Weighted; 3] {
+    fn row_sums<const N: usize, const ORDER: usize>(&self, basis: &Basis<N>, row: usize) -> [Weighted; 3] {
         let mut sums = [Weighted::ZERO; 3];
         for j in 0..=self.degree_v {
             let index = row * self.columns + basis.first + j;
             let w = self.weights.get(index).copied().unwrap_or(1.0);
             let weighted = Weighted(self.points[index].coords * w, w);
-            for (sum, values) in sums.iter_mut().zip(&basis.values) {
+            for (sum, values) in sums.iter_mut().zip(&basis.values).take(ORDER + 1) {
                 sum.add(values[j], &weighted);
             }
         }
@@ -267,6 +303,7 @@ mod tests {
         assert_eq!(jet.point, Point::new(0.5, 0.5, 0.25));
         assert_eq!(jet.du, Vector::new(1.0, 0.0, 0.5));
         assert_eq!(jet.duv, Vector::z());
+        assert_eq!(surface.tangents(0.5, 0.5), Jet { duv: Vector::zeros(), ..jet });
         assert_eq!(surface.spans(), [1, 1]);
     }
 }

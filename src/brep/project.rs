@@ -47,13 +47,17 @@ pub(super) fn closest_parameter(curve: &Curve, p: &Point, hint: Option<f64>) -> 
     })
 }
 
-/// The parameters of the point of `surface` nearest to `p`, for surfaces without a closed form.
-pub(super) fn closest_on_surface(surface: &Surface, p: &Point, hint: Option<[f64; 2]>) -> Option<[f64; 2]> {
+/// The parameters of the point of `surface` nearest to `p`, for surfaces without a closed form; `periods` are its own.
+pub(super) fn closest_on_surface(
+    surface: &Surface,
+    periods: [Option<f64>; 2],
+    p: &Point,
+    hint: Option<[f64; 2]>,
+) -> Option<[f64; 2]> {
     if let Surface::Extrusion { profile, direction } = surface {
         return project_extrusion(profile, direction, p, hint);
     }
     let [u0, u1, v0, v1] = surface.domain();
-    let periods = surface.periods();
     let ranges = [Range::new(u0, u1, periods[0]), Range::new(v0, v1, periods[1])];
     let start = match hint {
         Some(hint) => hint,

@@ -91,7 +91,12 @@ pub enum SurfaceKind {
 impl Surface {
     /// The point at (u, v).
     pub fn point(&self, u: f64, v: f64) -> Point {
-        self.jet(u, v).point
+        self.tangents(u, v).point
+    }
+
+    /// Point and first derivatives at (u, v); whether the second ones are there, is left open.
+    pub(super) fn tangents(&self, u: f64, v: f64) -> Jet {
+        if let Self::Nurbs(nurbs) = self { nurbs.tangents(u, v) } else { self.jet(u, v) }
     }
 
     /// Point and derivatives at (u, v); bounded surfaces clamp the parameters to their domain.
@@ -119,7 +124,7 @@ impl Surface {
 
     /// The unit normal S_u x S_v; `None` where it vanishes (poles).
     pub fn normal(&self, u: f64, v: f64) -> Option<Vector> {
-        let normal = self.jet(u, v).normal();
+        let normal = self.tangents(u, v).normal();
         normal.try_normalize(f64::MIN_POSITIVE).filter(|n| n.iter().all(|c| c.is_finite()))
     }
 
@@ -157,6 +162,16 @@ impl Surface {
     /// else Newton's method from `hint`, else from the best of a grid of samples. `None` where nothing finite comes
     /// out.
     pub fn project(&self, p: &Point, hint: Option<[f64; 2]>) -> Option<[f64; 2]> {
+        self.project_within(self.periods(), p, hint)
+    }
+
+    /// As [`Self::project`], for who has asked for the periods already: they cost more than the projection.
+    pub(super) fn project_within(
+        &self,
+        periods: [Option<f64>; 2],
+        p: &Point,
+        hint: Option<[f64; 2]>,
+    ) -> Option<[f64; 2]> {
         let uv = match self {
             Self::Plane(placement) => {
                 let d = p - placement.origin;
@@ -179,8 +194,10 @@ impl Surface {
                 [q.y.atan2(q.x), q.z.atan2(q.x.hypot(q.y) - major)]
             }
             Self::Revolution { profile, axis } => project_revolution(profile, axis, p, hint)?,
-            Self::Rectangular { basis, .. } => basis.project(p, hint)?,
-            Self::Nurbs(_) | Self::Extrusion { .. } | Self::Offset { .. } => closest_on_surface(self, p, hint)?,
+            Self::Rectangular { basis, .. } => basis.project_within(periods, p, hint)?,
+            Self::Nurbs(_) | Self::Extrusion { .. } | Self::Offset { .. } => {
+                closest_on_surface(self, periods, p, hint)?
+            }
         };
         (uv[0].is_finite() && uv[1].is_finite()).then_some(uv)
     }
@@ -288,8 +305,8 @@ fn offset(basis: &Surface, distance: f64, u: f64, v: f64) -> Jet {
 fn nurbs_periods(nurbs: &NurbsSurface) -> [Option<f64>; 2] {
     let [u0, u1, v0, v1] = nurbs.domain();
     let size = crate::geometry::Aabb::of(&nurbs.points).diagonal();
-    let same =
-        |a: [f64; 2], b: [f64; 2]| (nurbs.jet(a[0], a[1]).point - nurbs.jet(b[0], b[1]).point).norm() <= 1e-6 * size;
+    let at = |[u, v]: [f64; 2]| nurbs.tangents(u, v).point;
+    let same = |a: [f64; 2], b: [f64; 2]| (at(a) - at(b)).norm() <= 1e-6 * size;
     let shares = [0.0, 0.31, 0.5, 0.77, 1.0];
     let closed_u = shares.iter().all(|s| same([u0, v0 + s * (v1 - v0)], [u1, v0 + s * (v1 - v0)]));
     let closed_v = shares.iter().all(|s| same([u0 + s * (u1 - u0), v0], [u0 + s * (u1 - u0), v1]));

@@ -59,14 +59,14 @@ impl<'a> Chart<'a> {
         chart
     }
 
-    /// Point and derivatives, also outside the domain of a periodic surface.
-    pub fn jet(&self, uv: Uv) -> Jet {
+    /// Point and first derivatives, also outside the domain of a periodic surface.
+    pub fn tangents(&self, uv: Uv) -> Jet {
         let [u, v] = if self.wraps { self.wrapped(uv) } else { uv };
-        self.surface.jet(u, v)
+        self.surface.tangents(u, v)
     }
 
     pub fn point(&self, uv: Uv) -> Point {
-        self.jet(uv).point
+        self.tangents(uv).point
     }
 
     fn wrapped(&self, mut uv: Uv) -> Uv {
@@ -95,9 +95,13 @@ impl<'a> Chart<'a> {
                     let still = |side: usize| {
                         [0.13, 0.38, 0.71].iter().all(|&s| match side {
                             0 | 1 => {
-                                self.jet([self.domain[side], middle(s, v0, v1)]).dv.norm() * (v1 - v0) < 1e-6 * size
+                                self.tangents([self.domain[side], middle(s, v0, v1)]).dv.norm() * (v1 - v0)
+                                    < 1e-6 * size
                             }
-                            _ => self.jet([middle(s, u0, u1), self.domain[side]]).du.norm() * (u1 - u0) < 1e-6 * size,
+                            _ => {
+                                self.tangents([middle(s, u0, u1), self.domain[side]]).du.norm() * (u1 - u0)
+                                    < 1e-6 * size
+                            }
                         })
                     };
                     poles = [still(0), still(1), still(2), still(3)];
@@ -140,7 +144,8 @@ impl<'a> Chart<'a> {
     /// The nearest point of the surface and how far it is: from `hint` if that leads to one nearer than `good`, else
     /// from several samples, as a coiled surface has many places that look nearest from nearby.
     pub fn nearest(&self, p: &Point, hint: Option<Uv>, good: f64) -> Option<(f64, Uv)> {
-        let from = |hint: Option<Uv>| self.surface.project(p, hint).map(|uv| ((self.point(uv) - p).norm(), uv));
+        let project = |hint| self.surface.project_within(self.periods, p, hint);
+        let from = |hint: Option<Uv>| project(hint).map(|uv| ((self.point(uv) - p).norm(), uv));
         if !matches!(*self.surface, Surface::Nurbs(_) | Surface::Offset { .. }) {
             let near = from(hint);
             return match (near, hint) {
@@ -165,7 +170,7 @@ impl<'a> Chart<'a> {
     pub fn scale(&self, [u0, u1, v0, v1]: [f64; 4]) -> [f64; 2] {
         let mut longest = [0.0_f64; 2];
         for (s, t) in [(0.5, 0.5), (0.2, 0.3), (0.8, 0.7)] {
-            let jet = self.jet([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
+            let jet = self.tangents([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
             longest = [longest[0].max(jet.du.norm()), longest[1].max(jet.dv.norm())];
         }
         longest.map(|l| if l.is_finite() && l > 0.0 { l } else { 1.0 })
@@ -212,7 +217,7 @@ impl<'a> Chart<'a> {
         };
         let samples = spans.map(|n| (2 * n + 2).clamp(8, 40));
         let ruled = self.surface.is_ruled_along_v();
-        let at = |s: f64, t: f64| self.jet([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
+        let at = |s: f64, t: f64| self.tangents([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
         let along = |n: usize, jet: &dyn Fn(f64, f64) -> Jet| {
             let mut need = 1.0_f64;
             for line in [0.0, 0.35, 0.65, 1.0] {

@@ -41,7 +41,7 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
     let mut sum = Integrals::default();
     let sense = if chart.flipped { -1.0 } else { 1.0 };
     let mut at = |uv: Uv, weight: f64| {
-        let jet = chart.jet(uv);
+        let jet = chart.tangents(uv);
         let mut one = Integrals::default();
         one.add(&(jet.point - reference), &jet.normal(), weight);
         sum.area += one.area;

@@ -6,6 +6,9 @@ use super::chart::Uv;
 const MAX_NODES: usize = 20_000;
 /// A node this near to a segment, in cells, is left out.
 const CLEARANCE: f64 = 0.4;
+/// How far nodes inside are moved along u, in cells, to and fro from row to row: the corners of a rectangular cell lie
+/// on a circle, and only exact arithmetic, at five times the cost, could tell which diagonal is Delaunay's.
+const STAGGER: f64 = 1.0 / 64.0;
 
 /// A grid over a rectangle of parameter space.
 pub(super) struct Grid {
@@ -73,14 +76,22 @@ impl Grid {
     /// The nodes that are not blocked, column by column; `sides`: also those on the border of the rectangle.
     pub fn nodes(&self, sides: bool) -> impl Iterator<Item = Uv> + '_ {
         let [u0, u1, v0, v1] = self.rectangle;
-        let at =
-            |from: f64, to: f64, i: usize, n: usize| if i == n { to } else { from + (to - from) * i as f64 / n as f64 };
+        let at = |from: f64, to: f64, i: f64, n: usize| {
+            if i == n as f64 { to } else { from + (to - from) * i / n as f64 }
+        };
+        // Nodes on the sides stay: opposite sides may be the same line of the surface.
+        let cells = self.cells;
+        let staggered = move |i: usize, j: usize| match (i % cells[0] == 0 || j % cells[1] == 0, j % 2) {
+            (true, _) => i as f64,
+            (false, 0) => i as f64 + STAGGER,
+            (false, _) => i as f64 - STAGGER,
+        };
         let inner = move |i: usize, n: usize| sides || (i > 0 && i < n);
         let columns = (0..=self.cells[0]).filter(move |&i| inner(i, self.cells[0]));
         columns.flat_map(move |i| {
             let rows = (0..=self.cells[1]).filter(move |&j| inner(j, self.cells[1]));
             let free = rows.filter(move |&j| !self.blocked[self.index(i, j)]);
-            free.map(move |j| [at(u0, u1, i, self.cells[0]), at(v0, v1, j, self.cells[1])])
+            free.map(move |j| [at(u0, u1, staggered(i, j), self.cells[0]), at(v0, v1, j as f64, self.cells[1])])
         })
     }
 }

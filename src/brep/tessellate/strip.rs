@@ -36,7 +36,9 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     strip.pieces.iter().for_each(|[a, b]| grid.block(a, b));
     (0..2).filter(|&axis| strip.cuts[axis].is_some()).for_each(|axis| grid.join_sides(axis));
     let mut patch = std::mem::take(&mut strip.patch);
-    grid.nodes(true).filter(|uv| !strip.on_open_end(uv)).for_each(|uv| patch.add(chart, uv));
+    let [low, high] = strip.open_ends();
+    let held = |uv: &Uv| uv[1 - along] > low && uv[1 - along] < high;
+    grid.nodes(true).filter(held).for_each(|uv| patch.add(chart, uv));
     patch.sides = paths.iter().map(|p| strip.side_of(p, chart)).collect();
     fill(chart, patch, &strip.segments, scale, |p| strip.inside(p))
 }
@@ -360,13 +362,15 @@ impl Strip {
         rectangle.iter().all(|x| x.is_finite()).then_some(rectangle)
     }
 
-    /// Whether a grid node lies on an end of the strip that no pole closes: beyond the paths.
-    fn on_open_end(&self, uv: &Uv) -> bool {
+    /// The ends of the strip that no pole closes, beyond which there is no face: at the outermost paths.
+    fn open_ends(&self) -> [f64; 2] {
         let up = 1 - self.along;
         let high_inside = self.base != (self.turns % 2 != 0);
         let ends = super::boundary::rectangle(self.pieces.iter().flatten());
-        self.cuts[up].is_none()
-            && ((!self.base && uv[up] <= ends[2 * up]) || (!high_inside && uv[up] >= ends[2 * up + 1]))
+        let open = self.cuts[up].is_none();
+        let low = if open && !self.base { ends[2 * up] } else { f64::NEG_INFINITY };
+        let high = if open && !high_inside { ends[2 * up + 1] } else { f64::INFINITY };
+        [low, high]
     }
 }
 
