@@ -81,11 +81,12 @@ impl Grid {
         };
         // Nodes on the sides stay: opposite sides may be the same line of the surface.
         let cells = self.cells;
-        let staggered = move |i: usize, j: usize| match (i % cells[0] == 0 || j % cells[1] == 0, j % 2) {
-            (true, _) => i as f64,
-            (false, 0) => i as f64 + STAGGER,
-            (false, _) => i as f64 - STAGGER,
-        };
+        let staggered =
+            move |i: usize, j: usize| match (i.is_multiple_of(cells[0]) || j.is_multiple_of(cells[1]), j % 2) {
+                (true, _) => i as f64,
+                (false, 0) => i as f64 + STAGGER,
+                (false, _) => i as f64 - STAGGER,
+            };
         let inner = move |i: usize, n: usize| sides || (i > 0 && i < n);
         let columns = (0..=self.cells[0]).filter(move |&i| inner(i, self.cells[0]));
         columns.flat_map(move |i| {
