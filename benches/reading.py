@@ -109,10 +109,9 @@ def occt(paths):
 
 
 def symalign(paths):
-    """Facts of all files from `examples/facts`, and its peak memory over the largest file, in bytes."""
+    """Facts of all files from `benches/facts.rs`."""
     done = subprocess.run([FACTS, "-"], input="\n".join(paths), capture_output=True, text=True, check=True)
-    rows = {row["path"]: row for row in csv.DictReader(done.stdout.splitlines())}
-    return rows
+    return {row["path"]: row for row in csv.DictReader(done.stdout.splitlines())}
 
 
 def peak_memory(path):
@@ -170,6 +169,9 @@ def speed(read, ours, theirs):
         median = statistics.median(seconds(theirs[p]) / max(1e-9, seconds(ours[p])) for p in files)
         size = sum(os.path.getsize(p) for p in files) / 1e6
         print(f"{name[:44]:44} {len(files):5} {size:7.1f} {a:7.2f} {b:11.3f} {a / max(1e-9, b):13.1f} {median:7.1f}")
+    scanned = [p for p in read if ours[p]["ok"] == "1" and number(ours[p], "scan_s") > 0]
+    size, scan = sum(os.path.getsize(p) for p in scanned), sum(number(ours[p], "scan_s") for p in scanned)
+    print(f"text scan {size / 1e6 / max(1e-9, scan):.0f} MB/s")
     for p in sorted(read, key=os.path.getsize)[-3:]:
         size, peak = os.path.getsize(p), peak_memory(p)
         print(f"peak memory {peak / 1e6:7.1f} MB for {size / 1e6:6.1f} MB ({(peak - 30e6) / size:4.1f} x the file + 30 MB): {p}")

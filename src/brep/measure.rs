@@ -32,7 +32,7 @@ pub fn measure(model: &Model, mesh: &Mesh) -> Measures {
 
 /// Points of a free curve, near enough for its box.
 fn points_of(free: &FreeCurve) -> impl Iterator<Item = Point> + '_ {
-    const PIECES: usize = 16;
+    const PIECES: usize = 64;
     let breaks = free.curve.breaks();
     let inner = |pair: [f64; 2]| (1..=PIECES).map(move |i| pair[0] + (pair[1] - pair[0]) * i as f64 / PIECES as f64);
     let first = free.curve.domain()[0];
