@@ -62,18 +62,34 @@ pub(super) fn rectangle<'a>(points: impl Iterator<Item = &'a Uv>) -> [f64; 4] {
     points.fold(start, |r, p| [r[0].min(p[0]), r[1].max(p[0]), r[2].min(p[1]), r[3].max(p[1])])
 }
 
-/// The border of a face in space: one closed polyline for each loop, with the middles of the true edges.
-pub(super) fn polylines(face: &Face, lines: &EdgeLines, degenerate: &[bool]) -> Vec<[Vec<Point>; 2]> {
-    let mut chains: Vec<Vec<EdgeUse>> = Vec::new();
-    for face_loop in &face.loops {
-        let uses = face_loop.uses.iter().copied().filter(|u| !degenerate[u.edge.index()]).collect();
-        split_at_seams(uses, &mut chains);
-    }
-    chains.iter().map(|chain| polyline(chain, lines)).filter(|p| p[0].len() > 1).collect()
+/// The border of a face in space.
+#[derive(Clone, Default)]
+pub(super) struct Border {
+    /// One closed polyline for each loop, with the middles of the true edges.
+    pub loops: Vec<[Vec<Point>; 2]>,
+    /// A point on each seam: an edge that a loop runs along both ways, so that the face lies on both its sides.
+    pub seams: Vec<Point>,
 }
 
-/// Takes out edges that a chain runs along in both directions; what lies between them become chains of their own.
-fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>) {
+impl Border {
+    pub fn of(face: &Face, lines: &EdgeLines, degenerate: &[bool]) -> Self {
+        let (mut chains, mut seams) = (Vec::new(), Vec::new());
+        for face_loop in &face.loops {
+            let uses = face_loop.uses.iter().copied().filter(|u| !degenerate[u.edge.index()]).collect();
+            split_at_seams(uses, &mut chains, &mut seams);
+        }
+        let loops = chains.iter().map(|chain| polyline(chain, lines)).filter(|p| p[0].len() > 1).collect();
+        Self { loops, seams: seams.into_iter().map(|edge| half_way(edge, lines)).collect() }
+    }
+
+    /// All points of the loops.
+    pub fn points(&self) -> Vec<Point> {
+        self.loops.iter().flat_map(|l| l[0].iter().copied()).collect()
+    }
+}
+
+/// Takes out edges that a chain runs along in both directions; what lies between them becomes chains of their own.
+fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>, seams: &mut Vec<EdgeId>) {
     let mut open = vec![uses];
     while let Some(chain) = open.pop() {
         let mut first: FxHashMap<(EdgeId, bool), usize> = FxHashMap::default();
@@ -84,6 +100,7 @@ fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>) {
         let pair = pairs.min();
         match pair {
             Some((i, j)) => {
+                seams.push(chain[i].edge);
                 open.push(chain[i + 1..j].to_vec());
                 open.push(chain[j + 1..].iter().chain(&chain[..i]).copied().collect());
             }
@@ -91,6 +108,12 @@ fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>) {
             None => {}
         }
     }
+}
+
+/// A point near the middle of an edge.
+fn half_way(edge: EdgeId, lines: &EdgeLines) -> Point {
+    let (points, middles) = lines.line(edge);
+    middles[(points.len() - 1) / 2]
 }
 
 fn polyline(chain: &[EdgeUse], lines: &EdgeLines) -> [Vec<Point>; 2] {
@@ -117,8 +140,8 @@ pub(super) struct Unmapped {
 }
 
 /// Maps closed polylines into the parameter space of the chart. Points further than `far` (mm) from the surface are an error.
-pub(super) fn paths(chart: &Chart, borders: Vec<[Vec<Point>; 2]>, size: f64, far: f64) -> Result<Vec<Path>, Unmapped> {
-    borders.into_iter().map(|[points, middles]| path(chart, points, middles, size, far)).collect()
+pub(super) fn paths(chart: &Chart, loops: Vec<[Vec<Point>; 2]>, size: f64, far: f64) -> Result<Vec<Path>, Unmapped> {
+    loops.into_iter().map(|[points, middles]| path(chart, points, middles, size, far)).collect()
 }
 
 fn path(chart: &Chart, points: Vec<Point>, middles: Vec<Point>, size: f64, far: f64) -> Result<Path, Unmapped> {

@@ -15,6 +15,9 @@ const MAX_STARTS: usize = 8;
 /// Grid lines of one face in each direction at most.
 const MAX_LINES: usize = 128;
 
+/// Turns of a periodic surface that a path spans at most.
+const MAX_IMAGES: i32 = 64;
+
 /// A point of a parameter space.
 pub(super) type Uv = [f64; 2];
 
@@ -30,6 +33,8 @@ pub(super) struct Chart<'a> {
     /// Collapsed sides: [u low, u high, v low, v high].
     pub poles: [bool; 4],
     samples: OnceCell<Samples>,
+    /// Points in space that lie on the face, away from its border.
+    inner: Vec<Point>,
 }
 
 impl<'a> Chart<'a> {
@@ -53,8 +58,8 @@ impl<'a> Chart<'a> {
         let (domain, periods) = (surface.domain(), surface.periods());
         let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
             && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
-        let mut chart =
-            Self { surface, domain, periods, flipped: !same_sense, wraps, poles: [false; 4], samples: OnceCell::new() };
+        let (flipped, poles, samples, inner) = (!same_sense, [false; 4], OnceCell::new(), Vec::new());
+        let mut chart = Self { surface, domain, periods, flipped, wraps, poles, samples, inner };
         chart.poles = chart.find_poles(size);
         chart
     }
@@ -111,8 +116,9 @@ impl<'a> Chart<'a> {
         poles
     }
 
-    /// Bounds a cone at its apex, on the side where the paths are.
-    pub fn settle(&mut self, paths: &[Path]) {
+    /// Notes points of the face's inside and bounds a cone at its apex, on the side where the paths are.
+    pub fn settle(&mut self, paths: &[Path], inner: &[Point]) {
+        self.inner = inner.to_vec();
         let Surface::Cone { radius, half_angle, .. } = &*self.surface else { return };
         let apex = -radius / half_angle.tan();
         let heights = || paths.iter().flat_map(|p| &p.uv).map(|uv| uv[1]);
@@ -120,6 +126,23 @@ impl<'a> Chart<'a> {
         let side = if above { 2 } else { 3 };
         self.domain[side] = apex;
         self.poles[side] = true;
+    }
+
+    /// Parameters of points that are known to lie inside the face.
+    pub fn inner(&self) -> impl Iterator<Item = Uv> + '_ {
+        self.inner.iter().filter_map(|p| self.nearest(p, None, 0.0)).map(|(_, uv)| uv)
+    }
+
+    /// The places one or more periods from `uv` that may lie in the rectangle.
+    pub fn images(&self, uv: Uv, around: [f64; 4]) -> impl Iterator<Item = Uv> {
+        let axis = |axis: usize| {
+            let period = self.periods[axis].unwrap_or(0.0);
+            let turns = |to: f64| if period > 0.0 { (to - uv[axis]) / period } else { 0.0 };
+            let (low, high) = (turns(around[2 * axis]).floor() as i32, turns(around[2 * axis + 1]).ceil() as i32);
+            (low..=high.min(low.saturating_add(MAX_IMAGES))).map(move |k| uv[axis] + f64::from(k) * period)
+        };
+        let vs: Vec<f64> = axis(1).collect();
+        axis(0).flat_map(move |u| vs.clone().into_iter().map(move |v| [u, v]))
     }
 
     /// Whether the surface has no border: closed in both directions, by a period or by poles.

@@ -73,15 +73,20 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     by_delaunay(chart, &layout, patch, (!flat).then_some(cells))
 }
 
-/// On a closed surface a loop has a face on both sides; the direction of the largest one says that the face is not
-/// the one it encloses in parameter space.
+/// On a closed surface a loop has a face on both sides. Seams tell which one it is; where there are none, the
+/// direction of the largest loop.
 fn is_complement(chart: &Chart, paths: &[Path]) -> bool {
     if !chart.is_closed() {
         return false;
     }
-    let areas = paths.iter().map(Path::signed_area);
-    let largest = areas.max_by(|a, b| a.abs().total_cmp(&b.abs()));
-    largest.is_none_or(|area| (area < 0.0) != chart.flipped)
+    let size = |p: &&Path| p.signed_area().abs();
+    let Some(largest) = paths.iter().max_by(|a, b| size(a).total_cmp(&size(b))) else { return true };
+    let polygon: Vec<Point2> = largest.uv.iter().map(|&uv| Point2::from(uv)).collect();
+    let enclosed = |uv: &Uv| {
+        chart.images(*uv, largest.rectangle()).any(|q| polygon::winding_number(&polygon, &Point2::from(q)) != 0)
+    };
+    let votes: i32 = chart.inner().map(|uv| if enclosed(&uv) { -1 } else { 1 }).sum();
+    if votes != 0 { votes > 0 } else { (largest.signed_area() < 0.0) != chart.flipped }
 }
 
 /// Moves the other paths by whole periods into the outer one.
@@ -93,16 +98,9 @@ fn gather_inside(chart: &Chart, paths: &mut [Path], outer: usize) {
     let around = paths[outer].rectangle();
     for index in (0..paths.len()).filter(|&i| i != outer) {
         let start = paths[index].uv[0];
-        let shifts = |axis: usize| {
-            let period = chart.periods[axis].unwrap_or(0.0);
-            let low = if period > 0.0 { ((around[2 * axis] - start[axis]) / period).floor() as i32 } else { 0 };
-            let high = if period > 0.0 { ((around[2 * axis + 1] - start[axis]) / period).ceil() as i32 } else { 0 };
-            (low..=high.min(low + 64)).map(move |k| f64::from(k) * period)
-        };
-        let all = shifts(0).flat_map(|a| shifts(1).map(move |b| [a, b]));
-        let inside = |by: &Uv| polygon::winding_number(&polygon, &Point2::new(start[0] + by[0], start[1] + by[1])) != 0;
-        if let Some(by) = all.into_iter().find(inside) {
-            paths[index].shift(by);
+        let inside = |p: &Uv| polygon::winding_number(&polygon, &Point2::from(*p)) != 0;
+        if let Some([u, v]) = chart.images(start, around).find(inside) {
+            paths[index].shift([u - start[0], v - start[1]]);
         }
     }
 }

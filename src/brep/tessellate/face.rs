@@ -1,6 +1,6 @@
 //! One face -> its triangles and integrals, in the coordinates of its body.
 
-use super::boundary::{self, Path};
+use super::boundary::{self, Border, Path};
 use super::chart::{Chart, Uv};
 use super::domain;
 use super::edges::{EdgeLines, Fineness};
@@ -50,12 +50,11 @@ pub(super) fn mesh(context: &Context, face: &Face, reference: &Point) -> Result<
         FaceGeometry::Trimmed { surface, same_sense } => (surface, *same_sense),
         FaceGeometry::Faceted(facets) => return faceted(facets, reference),
     };
-    let borders = boundary::polylines(face, &context.lines, &context.degenerate);
-    let border: Vec<Point> = borders.iter().flat_map(|b| b[0].iter().copied()).collect();
-    let mut chart = Chart::new(surface, same_sense, &border, context.size);
-    match trimmed(context, surface, &mut chart, borders.clone(), reference) {
+    let border = Border::of(face, &context.lines, &context.degenerate);
+    let mut chart = Chart::new(surface, same_sense, &border.points(), context.size);
+    match trimmed(context, surface, &mut chart, &border, reference) {
         Ok(mesh) => Ok(mesh),
-        Err(why) => filled(context, face, borders, reference, &why),
+        Err(why) => filled(context, face, border.loops, reference, &why),
     }
 }
 
@@ -63,13 +62,13 @@ fn trimmed(
     context: &Context,
     surface: &Surface,
     chart: &mut Chart,
-    borders: Vec<[Vec<Point>; 2]>,
+    border: &Border,
     reference: &Point,
 ) -> Result<FaceMesh, String> {
     let far = FAR * context.size;
-    let mut paths = boundary::paths(chart, borders, context.size, far)
+    let mut paths = boundary::paths(chart, border.loops.clone(), context.size, far)
         .map_err(|e| format!("an edge is {:.3} mm off the surface", e.distance))?;
-    chart.settle(&paths);
+    chart.settle(&paths, &border.seams);
     if paths.is_empty() && !chart.is_closed() {
         paths.push(rim(chart, surface).ok_or("the face has no bounds and its surface is infinite")?);
     }

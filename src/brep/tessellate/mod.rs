@@ -23,6 +23,7 @@ mod fallback;
 mod integrate;
 mod interior;
 mod place;
+mod rings;
 mod sphere;
 mod strip;
 mod triangulate;

@@ -8,9 +8,11 @@ use super::chart::{Chart, Uv};
 use super::domain::{Patch, crosses_below, fill};
 use super::edges::Fineness;
 use super::interior::Grid;
-use super::triangulate::zip;
+use super::rings::between_two_rings;
 use crate::geometry::Point;
 
+/// How far beside a path or seam it is looked whether the face is there, as a share of a period or of a segment.
+const NUDGE: f64 = 1e-4;
 /// Cut lines tried at most.
 const MAX_CANDIDATES: usize = 200;
 
@@ -41,71 +43,6 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     grid.nodes(true).filter(held).for_each(|uv| patch.add(chart, uv));
     patch.sides = paths.iter().map(|p| strip.side_of(p, chart)).collect();
     fill(chart, patch, &strip.segments, scale, |p| strip.inside(p))
-}
-
-/// The wall between two rings that go round a straight-lined surface once each: no cut is needed.
-fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option<Patch> {
-    let [a, b] = paths else { return None };
-    let opposite = a.winding == [-b.winding[0], 0] && a.winding[0].abs() == 1 && b.winding[1] == 0;
-    let period = chart.periods[0]?;
-    if !chart.surface.is_ruled_along_v() || !opposite {
-        return None;
-    }
-    let mean = |p: &Path| p.uv.iter().map(|uv| uv[1]).sum::<f64>() / p.uv.len() as f64;
-    let (low, high) = if mean(a) < mean(b) { (a, b) } else { (b, a) };
-    let mut patch = Patch::default();
-    let lower = add_ring(&mut patch, low, period, None);
-    let from = patch.uv[lower[0] as usize][0];
-    let upper = add_ring(&mut patch, high, period, Some(from));
-    let turns = |chain: &[u32]| {
-        chain
-            .windows(2)
-            .map(|w| {
-                let (p, q) = (patch.uv[w[0] as usize], patch.uv[w[1] as usize]);
-                0.5 * (p[1] + q[1]) * (q[0] - p[0])
-            })
-            .sum::<f64>()
-    };
-    let ends = |chain: &[u32]| [chain[0], chain[chain.len() - 1]].map(|i| patch.uv[i as usize]);
-    let ([l0, l1], [h0, h1]) = (ends(&lower), ends(&upper));
-    // The shoelace formula around both chains and the two cut lines between them.
-    let area =
-        turns(&upper) - turns(&lower) - 0.5 * ((l0[1] + h0[1]) * (l0[0] - h0[0]) + (h1[1] + l1[1]) * (h1[0] - l1[0]));
-    let rectangle = super::boundary::rectangle(patch.uv.iter());
-    let steps = chart.steps([0.0, period, rectangle[2], rectangle[3]], fineness);
-    let rising = |chain: &[u32]| chain.windows(2).all(|w| patch.uv[w[1] as usize][0] >= patch.uv[w[0] as usize][0]);
-    if !rising(&lower) || !rising(&upper) || area <= 0.0 {
-        return None;
-    }
-    patch.triangles = zip(&patch.uv, &lower, &upper, area, 2.2 * period / steps[0].max(3) as f64)?;
-    // Going round in the direction of u, the lower ring has the face on its left.
-    let side = |path: &Path, lower: bool| if (path.winding[0] > 0) == lower { 1.0 } else { -1.0 };
-    patch.sides = vec![side(a, std::ptr::eq(a, low)), side(b, std::ptr::eq(b, low))];
-    Some(patch)
-}
-
-/// Adds a ring once round in the direction of growing u, the first point repeated at the end; it starts with the
-/// point nearest to `from`.
-fn add_ring(patch: &mut Patch, path: &Path, period: f64, from: Option<f64>) -> Vec<u32> {
-    let n = path.uv.len();
-    let forward = path.winding[0] > 0;
-    let target = from.unwrap_or(path.uv[0][0]);
-    let off = |i: usize| path.uv[i][0] - target - period * ((path.uv[i][0] - target) / period).round();
-    let first = (0..n).min_by(|&i, &j| off(i).abs().total_cmp(&off(j).abs())).unwrap_or(0);
-    let start = patch.uv.len() as u32;
-    let mut last = target + off(first);
-    for k in 0..=n {
-        let i = if forward { (first + k) % n } else { (first + n - k % n) % n };
-        let raw = path.uv[i];
-        let mut u = raw[0] + period * ((last - raw[0]) / period).round();
-        if k == n {
-            u = target + off(first) + period;
-        }
-        patch.points.push(path.points[i]);
-        patch.uv.push([u, raw[1]]);
-        last = u;
-    }
-    (start..start + n as u32 + 1).collect()
 }
 
 /// A parameter space cut open.
@@ -305,8 +242,12 @@ impl Strip {
         Some(())
     }
 
-    /// Each path votes with its length.
+    /// Seams lie inside. Where there are none each path votes with its length.
     fn base_by_direction(&self, chart: &Chart, paths: &[Path]) -> bool {
+        let votes: i32 = chart.inner().map(|uv| if self.odd(&self.nudged(uv)) { -1 } else { 1 }).sum();
+        if votes != 0 {
+            return votes > 0;
+        }
         let vote = |path: &Path| {
             let left_is_odd = self.left_of(path, chart).is_some_and(|p| self.odd(&p));
             let wanted_odd = left_is_odd != chart.flipped;
@@ -314,6 +255,21 @@ impl Strip {
             if wanted_odd { weight } else { -weight }
         };
         paths.iter().map(vote).sum::<f64>() < 0.0 || paths.is_empty()
+    }
+
+    /// The place in the strip, a little beside the given one: seams end at corners of the paths.
+    fn nudged(&self, mut uv: Uv) -> Uv {
+        uv[self.along] += NUDGE * self.periods[self.along];
+        self.wrap(uv)
+    }
+
+    fn wrap(&self, mut uv: Uv) -> Uv {
+        for (axis, x) in uv.iter_mut().enumerate() {
+            if let Some(cut) = self.cuts[axis] {
+                *x = cut + (*x - cut).rem_euclid(self.periods[axis]);
+            }
+        }
+        uv
     }
 
     /// A point just left of the path's longest segment, in the strip.
@@ -327,13 +283,8 @@ impl Strip {
         let [a, _, b] = path.segment(i, chart.periods);
         let d = [b[0] - a[0], b[1] - a[1]];
         let left = [-d[1] * scale[0] / scale[1], d[0] * scale[1] / scale[0]];
-        let mut p = [0.5 * (a[0] + b[0]) + 1e-4 * left[0], 0.5 * (a[1] + b[1]) + 1e-4 * left[1]];
-        for (axis, x) in p.iter_mut().enumerate() {
-            if let Some(cut) = self.cuts[axis] {
-                *x = cut + (*x - cut).rem_euclid(self.periods[axis]);
-            }
-        }
-        Some(p)
+        let beside = |axis: usize| 0.5 * (a[axis] + b[axis]) + NUDGE * left[axis];
+        Some(self.wrap([beside(0), beside(1)]))
     }
 
     fn side_of(&self, path: &Path, chart: &Chart) -> f64 {

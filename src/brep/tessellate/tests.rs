@@ -210,14 +210,54 @@ fn a_half_sphere_knows_its_half() {
     }
 }
 
+/// The circle with centre (x, 0, z) in the plane of x and z.
+fn upright(x: f64, z: f64, radius: f64) -> Curve {
+    let placement = Placement { origin: Point::new(x, 0.0, z), x: Vector::x(), y: Vector::z(), z: -Vector::y() };
+    Curve::Circle { placement, radius }
+}
+
+#[test]
+fn a_seam_tells_the_face_where_directions_are_wrong() {
+    // A disc of radius 7 whose rim is rounded by the upper outer quarter of a torus.
+    for wrong in [false, true] {
+        let mut b = Builder::new();
+        let ((low, v0), (high, v1)) = (b.circle(7.0, 0.0), b.circle(5.0, 2.0));
+        let seam = b.edge(v0, v1, Some(upright(5.0, 0.0, 2.0)));
+        let right = [(low, true), (seam, true), (high, false), (seam, false)];
+        let turned = [(seam, true), (high, true), (seam, false), (low, false)];
+        b.face(
+            Surface::Torus { placement: at_height(0.0), major: 5.0, minor: 2.0 },
+            true,
+            &[if wrong { &turned } else { &right }],
+        );
+        b.discs(Some((low, 0.0)), Some((high, 2.0)));
+        // Pappus: the quarter arc's centroid lies at 5 + 4/pi; the volume is that of the discs of radius 5 + sqrt(4 - z^2).
+        b.check(PI * (74.0 + 4.0 * (2.5 * PI + 2.0)), PI * (50.0 + 10.0 * PI + 16.0 / 3.0));
+    }
+}
+
+#[test]
+fn a_seam_to_the_pole_tells_the_cap() {
+    for wrong in [false, true] {
+        let mut b = Builder::new();
+        let (equator, vertex) = b.circle(2.0, 0.0);
+        let pole = b.vertex(0.0, 0.0, 2.0);
+        let seam = b.edge(vertex, pole, Some(upright(0.0, 0.0, 2.0)));
+        let sphere = Surface::Sphere { placement: at_height(0.0), radius: 2.0 };
+        b.face(sphere, true, &[&[(equator, !wrong), (seam, true), (seam, false)]]);
+        b.discs(Some((equator, 0.0)), None);
+        b.check(12.0 * PI, 16.0 / 3.0 * PI);
+    }
+}
+
 #[test]
 fn a_half_sphere_may_be_cut_through_its_poles() {
     let mut b = Builder::new();
     let vertex = b.vertex(2.0, 0.0, 0.0);
-    let upright = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::z(), z: -Vector::y() };
-    let rim = b.edge(vertex, vertex, Some(Curve::Circle { placement: upright, radius: 2.0 }));
+    let rim = b.edge(vertex, vertex, Some(upright(0.0, 0.0, 2.0)));
     b.face(Surface::Sphere { placement: at_height(0.0), radius: 2.0 }, true, &[&[(rim, true)]]);
-    b.face(Surface::Plane(upright), false, &[&[(rim, false)]]);
+    let wall = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::z(), z: -Vector::y() };
+    b.face(Surface::Plane(wall), false, &[&[(rim, false)]]);
     let mesh = b.check(12.0 * PI, 16.0 / 3.0 * PI);
     assert!((mesh.faces[0].centroid.y + 1.0).abs() < 1e-3);
 }

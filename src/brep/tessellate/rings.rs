@@ -1,0 +1,80 @@
+//! The wall between two rings that go round a straight-lined surface once each: a strip that needs no cut.
+
+use super::boundary::{Path, rectangle};
+use super::chart::Chart;
+use super::domain::Patch;
+use super::edges::Fineness;
+use super::triangulate::zip;
+use crate::geometry::{Point2, polygon};
+
+/// How much wider than a step of the curvature triangles may be.
+const WIDEST: f64 = 2.2;
+
+/// The wall, where two rings bound one and neither turns back on its way round.
+pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option<Patch> {
+    let [a, b] = paths else { return None };
+    let period = chart.periods[0]?;
+    let once = a.winding[0].abs() == 1 && a.winding[1] == 0 && b.winding == [-a.winding[0], 0];
+    if !once || !chart.surface.is_ruled_along_v() {
+        return None;
+    }
+    let height = |p: &Path| p.uv.iter().map(|uv| uv[1]).sum::<f64>() / p.uv.len() as f64;
+    let (low, high) = if height(a) < height(b) { (a, b) } else { (b, a) };
+    let mut patch = Patch::default();
+    let [lower, upper] = [low, high].map(|p| add_ring(&mut patch, p, period, low.uv[0][0]));
+    let rising = |chain: &[u32]| chain.windows(2).all(|w| patch.uv[w[1] as usize][0] >= patch.uv[w[0] as usize][0]);
+    let around: Vec<Point2> = lower.iter().chain(upper.iter().rev()).map(|&i| patch.uv[i as usize].into()).collect();
+    let area = polygon::signed_area(&around);
+    if !rising(&lower) || !rising(&upper) || area <= 0.0 {
+        return None;
+    }
+    let [_, _, v0, v1] = rectangle(patch.uv.iter());
+    let steps = chart.steps([0.0, period, v0, v1], fineness)[0].max(3);
+    patch.triangles = zip(&patch.uv, &lower, &upper, area, WIDEST * period / steps as f64)?;
+    // Going round in the direction of u, the lower ring has the face on its left.
+    let side = |path: &Path| f64::from(if std::ptr::eq(path, low) { path.winding[0] } else { -path.winding[0] });
+    patch.sides = vec![side(a), side(b)];
+    Some(patch)
+}
+
+/// Adds a ring once round in the direction of growing u, the first point repeated at the end; it starts with the
+/// point nearest to `start`.
+fn add_ring(patch: &mut Patch, path: &Path, period: f64, start: f64) -> Vec<u32> {
+    let n = path.uv.len();
+    let beyond = |i: usize| path.uv[i][0] - start - period * ((path.uv[i][0] - start) / period).round();
+    let first = (0..n).min_by(|&i, &j| beyond(i).abs().total_cmp(&beyond(j).abs())).unwrap_or(0);
+    let forward = path.winding[0] > 0;
+    let shift = start + beyond(first) - path.uv[first][0] + if forward { 0.0 } else { period };
+    let turn = if forward { period } else { -period };
+    let from = patch.uv.len() as u32;
+    for k in 0..=n {
+        let i = first + if forward { k } else { n - k };
+        let [u, v] = path.uv[i % n];
+        patch.points.push(path.points[i % n]);
+        patch.uv.push([u + shift + if i >= n { turn } else { 0.0 }, v]);
+    }
+    (from..from + n as u32 + 1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+
+    #[test]
+    fn rings_start_side_by_side_and_run_upwards() {
+        let ring = |us: [f64; 4], winding: i32| Path {
+            points: vec![Point::origin(); 4],
+            uv: us.map(|u| [u, 0.0]).to_vec(),
+            middles: vec![[0.0; 2]; 4],
+            winding: [winding, 0],
+        };
+        let mut patch = Patch::default();
+        let places =
+            |patch: &Patch, chain: Vec<u32>| chain.iter().map(|&i| patch.uv[i as usize][0]).collect::<Vec<_>>();
+        let chain = add_ring(&mut patch, &ring([0.0, 1.0, 2.0, 3.0], 1), 4.0, 2.25);
+        assert_eq!(places(&patch, chain), [2.0, 3.0, 4.0, 5.0, 6.0]);
+        let chain = add_ring(&mut patch, &ring([7.5, 6.5, 5.5, 4.5], -1), 4.0, 2.25);
+        assert_eq!(places(&patch, chain), [2.5, 3.5, 4.5, 5.5, 6.5]);
+    }
+}
