@@ -7,6 +7,11 @@ use super::edges::EdgeLines;
 use crate::brep::{EdgeId, EdgeUse, Face};
 use crate::geometry::{Point, Point2, polygon};
 
+/// Points nearer than this share of what is too far are taken to be where they should be.
+const GOOD: f64 = 0.02;
+/// Neighbouring points that are further apart than this share of the domain are looked at twice.
+const FAR_APART: f64 = 0.05;
+
 /// A closed path in parameter space, unwrapped: it may leave the domain of a periodic surface.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Path {
@@ -148,12 +153,12 @@ fn path(chart: &Chart, points: Vec<Point>, middles: Vec<Point>, size: f64, far: 
     if let crate::brep::Surface::Plane(_) = *chart.surface {
         return plane_path(chart, points, &middles, far);
     }
-    let mut raw = Tracer { chart, far, size, hint: None };
-    let mut mapped: Vec<(Uv, Uv, Option<usize>)> = Vec::with_capacity(points.len());
-    for (p, m) in points.iter().zip(&middles) {
-        let (uv, pole) = raw.map(p)?;
-        let (middle, _) = raw.map(m)?;
-        mapped.push((uv, middle, pole));
+    let mut tracer = Tracer { chart, far, good: GOOD * far, size, hint: None };
+    let mut mapped = tracer.trace(&points, &middles)?;
+    if jumps(chart, &points, &mapped) {
+        // Where a coil touches itself the nearest point may be on the next turn: stay on the one where the loop is.
+        tracer = Tracer { good: far, hint: None, ..tracer };
+        mapped = tracer.trace(&points, &middles).ok().filter(|m| !jumps(chart, &points, m)).unwrap_or(mapped);
     }
     // Start away from poles, where one parameter means nothing.
     let start = mapped.iter().position(|m| m.2.is_none()).unwrap_or(0);
@@ -185,18 +190,28 @@ fn plane_path(chart: &Chart, points: Vec<Point>, middles: &[Point], far: f64) ->
     Ok(Path { uv, middles: middles.iter().map(map).collect(), points, winding: [0, 0] })
 }
 
+/// A point of a loop, the middle of the edge behind it, and the pole that it lies on.
+type Mapped = (Uv, Uv, Option<usize>);
+
 /// Projects one point after the other.
 struct Tracer<'a> {
     chart: &'a Chart<'a>,
+    /// Points further than this from the surface are an error, mm.
     far: f64,
+    /// Points nearer than this are not looked for elsewhere on the surface, mm.
+    good: f64,
     size: f64,
     hint: Option<Uv>,
 }
 
 impl Tracer<'_> {
+    fn trace(&mut self, points: &[Point], middles: &[Point]) -> Result<Vec<Mapped>, Unmapped> {
+        let both = points.iter().zip(middles);
+        both.map(|(p, m)| self.map(p).and_then(|(uv, pole)| Ok((uv, self.map(m)?.0, pole)))).collect()
+    }
+
     fn map(&mut self, p: &Point) -> Result<(Uv, Option<usize>), Unmapped> {
-        let (distance, uv) =
-            self.chart.nearest(p, self.hint, 0.02 * self.far).ok_or(Unmapped { distance: f64::INFINITY })?;
+        let (distance, uv) = self.chart.nearest(p, self.hint, self.good).ok_or(Unmapped { distance: f64::INFINITY })?;
         if distance.is_nan() || distance > self.far {
             return Err(Unmapped { distance });
         }
@@ -206,14 +221,37 @@ impl Tracer<'_> {
     }
 }
 
+/// Whether neighbouring points of a loop, near each other in space, lie far apart on a surface without a closed form:
+/// half way between their parameters the surface is somewhere else.
+fn jumps(chart: &Chart, points: &[Point], mapped: &[Mapped]) -> bool {
+    let n = points.len();
+    let [u0, u1, v0, v1] = chart.domain;
+    let jump = |i: usize| {
+        let ((a, middle, pole), (b, _, next_pole)) = (mapped[i], mapped[(i + 1) % n]);
+        let (p, q) = (points[i], points[(i + 1) % n]);
+        let middle = nearest_image(chart, middle, a);
+        let b = nearest_image(chart, b, middle);
+        let share = ((b[0] - a[0]) / (u1 - u0)).abs().max(((b[1] - a[1]) / (v1 - v0)).abs());
+        if pole.or(next_pole).is_some() || share.is_nan() || share < FAR_APART {
+            return false;
+        }
+        let between = chart.point([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+        (between - p).norm().min((between - q).norm()) > 2.0 * (q - p).norm()
+    };
+    chart.is_free_form() && (0..n).any(jump)
+}
+
+/// The place whole periods from `uv` that is nearest to another.
+fn nearest_image(chart: &Chart, uv: Uv, to: Uv) -> Uv {
+    let turn = |i: usize| chart.periods[i].map_or(uv[i], |p| uv[i] + p * ((to[i] - uv[i]) / p).round());
+    [turn(0), turn(1)]
+}
+
 /// Joins the mapped points: each comes within half a period of the one before; at a pole the path runs along the
 /// collapsed side from where it came in to where it goes out.
-fn unwrap(chart: &Chart, points: &[Point], mapped: &[(Uv, Uv, Option<usize>)], flipped: bool) -> Path {
+fn unwrap(chart: &Chart, points: &[Point], mapped: &[Mapped], flipped: bool) -> Path {
     let mut path = Path::default();
-    let nearest = |uv: Uv, to: Uv| {
-        let turn = |i: usize| chart.periods[i].map_or(uv[i], |p| uv[i] + p * ((to[i] - uv[i]) / p).round());
-        [turn(0), turn(1)]
-    };
+    let nearest = |uv: Uv, to: Uv| nearest_image(chart, uv, to);
     let n = mapped.len();
     let mut last = mapped[0].0;
     let mut i = 0;

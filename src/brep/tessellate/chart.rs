@@ -3,17 +3,18 @@
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
+use super::bending::sampled_steps;
 use super::boundary::Path;
 use super::edges::{Fineness, angular_step};
 use crate::brep::Surface;
 use crate::brep::project::Samples;
 use crate::brep::surface::Jet;
-use crate::geometry::{Point, Vector};
+use crate::geometry::Point;
 
 /// Places from which the nearest point of a free-form surface is looked for.
 const MAX_STARTS: usize = 8;
 /// Grid lines of one face in each direction at most.
-const MAX_LINES: usize = 128;
+pub(super) const MAX_LINES: usize = 512;
 
 /// Turns of a periodic surface that a path spans at most.
 const MAX_IMAGES: i32 = 64;
@@ -164,12 +165,17 @@ impl<'a> Chart<'a> {
         })
     }
 
+    /// Whether nearest points are found by iteration from samples.
+    pub fn is_free_form(&self) -> bool {
+        matches!(*self.surface, Surface::Nurbs(_) | Surface::Offset { .. })
+    }
+
     /// The nearest point of the surface and how far it is: from `hint` if that leads to one nearer than `good`, else
     /// from several samples, as a coiled surface has many places that look nearest from nearby.
     pub fn nearest(&self, p: &Point, hint: Option<Uv>, good: f64) -> Option<(f64, Uv)> {
         let project = |hint| self.surface.project_within(self.periods, p, hint);
         let from = |hint: Option<Uv>| project(hint).map(|uv| ((self.point(uv) - p).norm(), uv));
-        if !matches!(*self.surface, Surface::Nurbs(_) | Surface::Offset { .. }) {
+        if !self.is_free_form() {
             let near = from(hint);
             return match (near, hint) {
                 (Some(found), Some(_)) if found.0 > good => from(None).filter(|n| n.0 < found.0).or(near),
@@ -225,63 +231,8 @@ impl<'a> Chart<'a> {
             Surface::Torus { major, minor, .. } => {
                 [turns(u1 - u0, major.abs() + minor.abs()), turns(v1 - v0, minor.abs())]
             }
-            _ => self.sampled_steps(rectangle, fineness),
+            _ => sampled_steps(self, rectangle, fineness),
         };
         counts.map(|n| n.clamp(1, MAX_LINES))
     }
-
-    /// From second differences and turns of the normal on a coarse grid.
-    fn sampled_steps(&self, [u0, u1, v0, v1]: [f64; 4], fineness: &Fineness) -> [usize; 2] {
-        let spans = match &*self.surface {
-            Surface::Nurbs(nurbs) => nurbs.spans(),
-            Surface::Extrusion { profile, .. } => [profile.breaks().len().max(4), 1],
-            Surface::Revolution { profile, .. } => [4, profile.breaks().len().max(4)],
-            _ => [4, 4],
-        };
-        let samples = spans.map(|n| (2 * n + 2).clamp(8, 40));
-        let ruled = self.surface.is_ruled_along_v();
-        let at = |s: f64, t: f64| self.tangents([u0 + s * (u1 - u0), v0 + t * (v1 - v0)]);
-        let along = |n: usize, jet: &dyn Fn(f64, f64) -> Jet| {
-            let mut need = 1.0_f64;
-            for line in [0.0, 0.35, 0.65, 1.0] {
-                let row: Vec<Jet> = (0..=n).map(|i| jet(i as f64 / n as f64, line)).collect();
-                need = need.max(row_need(&row, fineness));
-            }
-            need.min(MAX_LINES as f64).ceil() as usize
-        };
-        if ruled {
-            return [along(samples[0], &at), 1];
-        }
-        let twist = twist_need([at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)].map(|j| j.point), fineness);
-        [along(samples[0], &at).max(twist), along(samples[1], &|s, t| at(t, s)).max(twist)]
-    }
-}
-
-/// How many steps in each direction a surface needs whose corners do not lie in a plane: the diagonals of a cell are
-/// apart by a quarter of the second mixed difference, whatever rows and columns look like.
-fn twist_need([a, b, c, d]: [Point; 4], fineness: &Fineness) -> usize {
-    let apart = (a.coords - b.coords - c.coords + d.coords) * 0.25;
-    let normal = (d - a).cross(&(c - b)).try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::zeros);
-    let need = (apart.dot(&normal).abs() / fineness.deflection).sqrt();
-    if need.is_finite() { need.ceil().clamp(1.0, MAX_LINES as f64) as usize } else { 1 }
-}
-
-/// How many equal steps a row of samples needs for the deflection and the angle of the normals.
-fn row_need(row: &[Jet], fineness: &Fineness) -> f64 {
-    let n = (row.len() - 1) as f64;
-    let mut sagitta = 0.0_f64;
-    let mut angle = 0.0_f64;
-    for three in row.windows(3) {
-        let bow = (three[0].point.coords + three[2].point.coords) * 0.5 - three[1].point.coords;
-        let normal = three[1].normal().try_normalize(f64::MIN_POSITIVE).unwrap_or_else(Vector::zeros);
-        sagitta = sagitta.max(bow.dot(&normal).abs());
-        let (a, b) = (three[0].normal(), three[2].normal());
-        if sagitta > 0.02 * fineness.deflection && a.norm() > 0.0 && b.norm() > 0.0 {
-            angle = angle.max(a.cross(&b).norm().atan2(a.dot(&b)));
-        }
-    }
-    let by_sagitta = 0.5 * n * (sagitta / fineness.deflection).sqrt();
-    let by_angle = 0.5 * n * angle / fineness.angle;
-    let need = by_sagitta.max(by_angle);
-    if need.is_finite() { need } else { 1.0 }
 }

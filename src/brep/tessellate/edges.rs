@@ -20,7 +20,10 @@ pub(super) struct EdgeLines {
     points: Vec<Point>,
     /// The point of the curve half way between a point and the next one of its edge.
     middles: Vec<Point>,
-    starts: Vec<u32>,
+    /// Where the points of each edge begin and end.
+    ranges: Vec<[u32; 2]>,
+    /// Edges of faces in whose parameter space straight edges need not be straight.
+    free_form: Vec<bool>,
 }
 
 /// What the edges of a body are cut by.
@@ -33,7 +36,7 @@ pub(super) struct Fineness {
 }
 
 impl EdgeLines {
-    /// Tessellates the edges; `fineness[e]` and `free_form[e]` say how each is to be cut.
+    /// Tessellates the edges; `spans`: where each begins and ends on its curve.
     pub fn of(
         model: &Model,
         spans: &[Option<[f64; 2]>],
@@ -41,24 +44,30 @@ impl EdgeLines {
         cancel: &Cancel,
     ) -> Result<Self, Cancelled> {
         let free_form = edges_of_free_form_faces(model);
-        let mut lines = Self { points: Vec::new(), middles: Vec::new(), starts: vec![0] };
+        let mut lines = Self { points: Vec::new(), middles: Vec::new(), ranges: Vec::new(), free_form };
         for (index, span) in spans.iter().enumerate() {
             cancel.check()?;
-            let least = if free_form[index] { FREE_FORM_SEGMENTS } else { 1 };
-            lines.add(model, EdgeId(index as u32), *span, fineness, least);
+            let range = lines.add(model, EdgeId(index as u32), *span, fineness);
+            lines.ranges.push(range);
         }
         Ok(lines)
     }
 
     /// Points and middles of an edge; the last middle repeats the last point.
     pub fn line(&self, edge: EdgeId) -> (&[Point], &[Point]) {
-        let range = self.starts[edge.index()] as usize..self.starts[edge.index() + 1] as usize;
-        (&self.points[range.clone()], &self.middles[range])
+        let range = self.ranges[edge.index()].map(|i| i as usize);
+        (&self.points[range[0]..range[1]], &self.middles[range[0]..range[1]])
     }
 
-    fn add(&mut self, model: &Model, id: EdgeId, span: Option<[f64; 2]>, fineness: &Fineness, least: usize) {
+    /// Tessellates an edge again.
+    pub fn replace(&mut self, model: &Model, edge: EdgeId, span: Option<[f64; 2]>, fineness: &Fineness) {
+        self.ranges[edge.index()] = self.add(model, edge, span, fineness);
+    }
+
+    fn add(&mut self, model: &Model, id: EdgeId, span: Option<[f64; 2]>, fineness: &Fineness) -> [u32; 2] {
         let [start, end] = model.ends(id);
         let first = self.points.len();
+        let least = if self.free_form[id.index()] { FREE_FORM_SEGMENTS } else { 1 };
         match (&model.edges[id.index()].curve, span) {
             (Some(curve), Some([from, to])) if !matches!(**curve, Curve::Line { .. }) => {
                 self.follow(curve, [from, to], fineness, least);
@@ -69,7 +78,7 @@ impl EdgeLines {
             }
             _ => self.straight(&start, &end, least),
         }
-        self.starts.push(self.points.len() as u32);
+        [first as u32, self.points.len() as u32]
     }
 
     fn straight(&mut self, start: &Point, end: &Point, segments: usize) {

@@ -44,6 +44,13 @@ pub(super) struct FaceMesh {
     pub warning: Option<String>,
 }
 
+impl FaceMesh {
+    /// The area of the triangles.
+    pub fn plain_area(&self) -> f64 {
+        integrate_triangles(&self.points, &self.triangles, &self.reference).area
+    }
+}
+
 /// Tessellates a face, or says why it cannot be.
 pub(super) fn mesh(context: &Context, face: &Face, reference: &Point) -> Result<FaceMesh, String> {
     let (surface, same_sense) = match &face.geometry {

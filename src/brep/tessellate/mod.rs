@@ -7,13 +7,15 @@
 //! over the periods and laid out as closed paths ([`boundary`]). Paths that go round the surface are wrapped into a
 //! strip that is cut open ([`strip`]). Polygons are cut into ears, straight-lined walls into strips; everything else
 //! is a constrained Delaunay triangulation with interior points by curvature, and the inside is found by the parity
-//! of crossings ([`domain`]). Area, centroid and flux are integrals over the true trimmed surface ([`integrate`]).
+//! of crossings ([`domain`]). Edges that are too coarse for a narrow face are cut again ([`refine`]). Area, centroid
+//! and flux are integrals over the true trimmed surface ([`integrate`]).
 //!
 //! Cost: linear in edges and faces; a Delaunay face of n points takes O(n log n).
 //!
 //! It does not promise: that free-form silhouettes are nearer than the deflection; that a face whose edges do not
 //! lie on its surface has the right shape (it is filled with a plane, with a warning).
 
+mod bending;
 mod boundary;
 mod chart;
 mod domain;
@@ -23,6 +25,7 @@ mod fallback;
 mod integrate;
 mod interior;
 mod place;
+mod refine;
 mod rings;
 mod sphere;
 mod strip;
@@ -82,8 +85,10 @@ pub fn tessellate(
     let fineness = Fineness::new(options, part_size);
     let lines = EdgeLines::of(model, &spans, &fineness, cancel)?;
     let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
-    let context = Context { model, lines, degenerate, fineness, size: part_size, reference: references(model, &boxes) };
-    let faces = face_meshes(&context, cancel)?;
+    let reference = references(model, &boxes);
+    let mut context = Context { model, lines, degenerate, fineness, size: part_size, reference };
+    let mut faces = face_meshes(&context, cancel)?;
+    refine::refine(&mut context, &spans, &mut faces, cancel)?;
     Ok(place::place(model, faces, options.max_triangles, cancel)?.finish())
 }
 
