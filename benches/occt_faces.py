@@ -11,8 +11,8 @@ centroid is nearest, among those that nobody has taken; faces that are left over
 What is printed: the file, our entity number, the kind of surface, and by how much the face is off:
 
     area       |ours - OCCT's| as a share of OCCT's area             printed above 0.005
-               (OCCT's quadrature of a curved face is of a fixed order, or adaptive and now and then far off; where
-               the two differ by more than 0.002, its own fine triangles decide)
+               (OCCT's quadrature is of a fixed order, which free-form borders need more of, or adaptive and now and
+               then far off; where the two differ by more than 0.002, its own fine triangles decide)
     triangles  |our triangles' area - our exact area| / exact area   printed above 0.03
     box        largest distance of two sides / the file's diagonal   printed above 0.002
                (OCCT's box of a free-form face is that of its parameter rectangle; where the box of its edges is
@@ -31,6 +31,7 @@ UNSEEN = {"area": 1e-6, "triangles": 1e-4, "box": 0.0}
 STEP = (".step", ".stp", ".p21")
 CORNERS = "xmin ymin zmin xmax ymax zmax".split()
 CENTROID = "cx cy cz".split()
+FREE_FORM = ("bsplinesurface", "beziersurface", "surfaceofrevolution", "surfaceofextrusion", "offsetsurface", "othersurface")
 
 
 def distance(a, b):
@@ -94,15 +95,14 @@ def face_facts(face):
     BRepGProp.SurfaceProperties_s(face, fixed)
     kind = str(BRepAdaptor_Surface(face, False).GetType()).split("_")[-1].lower()
     area, c = abs(fixed.Mass()), fixed.CentreOfMass()
-    if kind not in ("plane", "cylinder", "cone", "torus"):
-        BRepGProp.SurfaceProperties_s(face, adaptive, 1e-5, False)
-        edges = edge_box(face)
-        unsure = not abs(abs(adaptive.Mass()) - area) <= 0.002 * area
-        beyond = edges.IsVoid() or box.IsVoid() or distance(edges.Get(), box.Get()) > 1e-3 * box.SquareExtent() ** 0.5
-        if unsure or beyond:
-            mesh_area, mesh_box = triangles(face, 0.001 * area**0.5)
-            area = mesh_area if unsure and mesh_area else area
-            box = mesh_box if beyond and mesh_box else box
+    BRepGProp.SurfaceProperties_s(face, adaptive, 1e-5, False)
+    unsure = not abs(abs(adaptive.Mass()) - area) <= 0.002 * area
+    edges = edge_box(face) if kind in FREE_FORM else box
+    beyond = edges.IsVoid() or box.IsVoid() or distance(edges.Get(), box.Get()) > 1e-3 * box.SquareExtent() ** 0.5
+    if unsure or beyond:
+        mesh_area, mesh_box = triangles(face, 0.001 * area**0.5)
+        area = mesh_area if unsure and mesh_area else area
+        box = mesh_box if beyond and mesh_box else box
     row = {"kind": kind, "area": area, "cx": c.X(), "cy": c.Y(), "cz": c.Z()}
     if not box.IsVoid():
         row.update(zip(CORNERS, box.Get()))
