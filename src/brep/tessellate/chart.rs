@@ -6,6 +6,7 @@ use std::cell::OnceCell;
 use super::bending::sampled_steps;
 use super::boundary::Path;
 use super::edges::{Fineness, angular_step};
+use super::spindle::Part;
 use crate::brep::Surface;
 use crate::brep::project::Samples;
 use crate::brep::surface::Jet;
@@ -36,6 +37,8 @@ pub(super) struct Chart<'a> {
     samples: OnceCell<Samples>,
     /// Points in space that lie on the face, away from its border.
     inner: Vec<Point>,
+    /// Which part of a torus that cuts itself.
+    part: Option<Part>,
 }
 
 impl<'a> Chart<'a> {
@@ -59,9 +62,11 @@ impl<'a> Chart<'a> {
         let (domain, periods) = (surface.domain(), surface.periods());
         let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
             && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
-        let (flipped, poles, samples, inner) = (!same_sense, [false; 4], OnceCell::new(), Vec::new());
-        let mut chart = Self { surface, domain, periods, flipped, wraps, poles, samples, inner };
+        let (flipped, poles, samples) = (!same_sense, [false; 4], OnceCell::new());
+        let mut chart =
+            Self { surface, domain, periods, flipped, wraps, poles, samples, inner: Vec::new(), part: None };
         chart.poles = chart.find_poles(size);
+        chart.spindle(border);
         chart
     }
 
@@ -115,6 +120,16 @@ impl<'a> Chart<'a> {
             }
         }
         poles
+    }
+
+    /// Bounds a torus that cuts itself to the part where the border is: a surface with two poles.
+    fn spindle(&mut self, border: &[Point]) {
+        self.part = Part::of(&self.surface, border);
+        if let Some(part) = &self.part {
+            [self.domain[2], self.domain[3]] = part.range();
+            self.periods[1] = None;
+            self.poles = [false, false, true, true];
+        }
     }
 
     /// Notes points of the face's inside and bounds a cone at its apex, on the side where the paths are.
@@ -173,6 +188,10 @@ impl<'a> Chart<'a> {
     /// The nearest point of the surface and how far it is: from `hint` if that leads to one nearer than `good`, else
     /// from several samples, as a coiled surface has many places that look nearest from nearby.
     pub fn nearest(&self, p: &Point, hint: Option<Uv>, good: f64) -> Option<(f64, Uv)> {
+        if let Some(part) = &self.part {
+            let uv = part.project(p);
+            return Some(((self.point(uv) - p).norm(), uv));
+        }
         let project = |hint| self.surface.project_within(self.periods, p, hint);
         let from = |hint: Option<Uv>| project(hint).map(|uv| ((self.point(uv) - p).norm(), uv));
         if !self.is_free_form() {

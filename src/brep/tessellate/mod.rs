@@ -28,6 +28,7 @@ mod place;
 mod refine;
 mod rings;
 mod sphere;
+mod spindle;
 mod strip;
 mod triangulate;
 

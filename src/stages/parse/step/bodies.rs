@@ -5,7 +5,7 @@ use super::records::Record;
 use super::topology::{Builder, LooseFace};
 use crate::brep::{Body, BodyId, FaceId, Shell};
 use crate::cancel::{Cancel, Cancelled};
-use crate::stages::parse::fault::{Fault, Read};
+use crate::stages::parse::fault::Read;
 
 const SOLID: &[Kind] = &[Kind::RepresentationItem, Kind::ManifoldSolidBrep, Kind::BrepWithVoids];
 const SHELL: &[Kind] = &[Kind::RepresentationItem, Kind::ConnectedFaceSet];
@@ -195,13 +195,27 @@ impl Builder<'_> {
                 | Kind::UniformSurface
                 | Kind::BezierSurface
                 | Kind::SphericalSurface
-                | Kind::ToroidalSurface => return self.whole_surface(id).map(Some),
-                Kind::CurveBoundedSurface => {
-                    return Err(Fault::new(id, "surfaces bounded by curves without topology are not read"));
-                }
+                | Kind::ToroidalSurface
+                | Kind::DegenerateToroidalSurface
+                | Kind::SurfaceReplica => return self.whole_surface(id).map(Some),
+                Kind::CurveBoundedSurface => return self.curve_bounded(&record).map(Some),
                 _ => {}
             }
         }
         Ok(None)
+    }
+
+    /// CURVE_BOUNDED_SURFACE: each of its closed curves becomes a loop of one edge.
+    fn curve_bounded(&mut self, record: &Record) -> Read<LooseFace> {
+        let mut cursor = record.fields(&[Kind::RepresentationItem, Kind::CurveBoundedSurface]);
+        cursor.skip_many(2);
+        let boundaries = cursor.references()?;
+        if cursor.flag() == Some(true) && !boundaries.is_empty() {
+            return Err(record.fault("a surface whose own border is cut by further curves"));
+        }
+        self.geometry.spend(record.id, boundaries.len())?;
+        let mut face = self.whole_surface(record.id)?;
+        face.loops = boundaries.into_iter().map(|id| self.curve_loop(id)).collect::<Read<_>>()?;
+        Ok(face)
     }
 }

@@ -91,6 +91,7 @@ kinds! {
     OffsetSurface b"OFFSET_SURFACE"
     RectangularTrimmedSurface b"RECTANGULAR_TRIMMED_SURFACE"
     CurveBoundedSurface b"CURVE_BOUNDED_SURFACE"
+    SurfaceReplica b"SURFACE_REPLICA"
     VertexPoint b"VERTEX_POINT"
     Edge b"EDGE"
     EdgeCurve b"EDGE_CURVE"

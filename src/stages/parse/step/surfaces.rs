@@ -7,6 +7,7 @@ use super::records::Record;
 use super::splines;
 use crate::brep::{Curve, Surface};
 use crate::stages::parse::fault::{Fault, Read};
+use crate::stages::parse::moved::moved_surface;
 
 /// How deep surfaces may be made of surfaces.
 const DEEPEST_SURFACE: u32 = 16;
@@ -64,12 +65,24 @@ impl Geometry<'_> {
                 Surface::Offset { basis, distance: cursor.real()? * self.units.length }
             }
             Kind::RectangularTrimmedSurface => self.rectangular(record, depth)?,
+            Kind::SurfaceReplica => self.surface_replica(record, depth)?,
             Kind::CurveBoundedSurface => {
                 let mut cursor = record.fields(&[Kind::RepresentationItem, Kind::CurveBoundedSurface]);
                 self.nested_surface(cursor.skip_many(1).reference()?, depth + 1)?
             }
             _ => return Ok(None),
         }))
+    }
+
+    /// SURFACE_REPLICA: a surface moved by a similarity.
+    fn surface_replica(&self, record: &Record, depth: u32) -> Read<Surface> {
+        let mut cursor = record.fields(&[Kind::RepresentationItem, Kind::SurfaceReplica]);
+        let parent = self.nested_surface(cursor.skip_many(1).reference()?, depth + 1)?;
+        let by = self.transform(cursor.reference()?)?;
+        if by.mirrors() {
+            return Err(record.fault("a mirrored copy of a surface"));
+        }
+        Ok(moved_surface(parent, &by).0)
     }
 
     fn elementary(&self, record: &Record, kind: Kind) -> Read<Surface> {

@@ -16,6 +16,9 @@ use crate::stages::parse::notes::Notes;
 /// How deep oriented edges and faces may refer to others.
 const DEEPEST_ORIENTED: u32 = 8;
 
+/// The ends of a closed curve are nearer than this share of the distance to its middle.
+const CLOSED: f64 = 1e-3;
+
 const EDGE: &[Kind] = &[Kind::RepresentationItem, Kind::Edge, Kind::EdgeCurve, Kind::Subedge];
 const FACE: &[Kind] = &[Kind::RepresentationItem, Kind::Face, Kind::FaceSurface];
 const BOUND: &[Kind] = &[Kind::RepresentationItem, Kind::FaceBound];
@@ -193,6 +196,23 @@ impl<'a> Builder<'a> {
             return Err(record.fault("a loop was expected"));
         }
         Ok(face_loop)
+    }
+
+    /// A closed curve as a loop of one edge that starts where the curve does.
+    pub(super) fn curve_loop(&mut self, id: u64) -> Read<FaceLoop> {
+        let curve = self.geometry.curve(id)?;
+        let [start, end] = curve.domain();
+        let (first, last, middle) = (curve.point(start), curve.point(end), curve.point(0.5 * (start + end)));
+        let gap = (last - first).norm();
+        // Written so that not-a-number, of infinite curves, is refused as well.
+        if !(gap <= CLOSED * (middle - first).norm()) {
+            return Err(Fault::new(id, "a boundary curve that is not closed"));
+        }
+        let vertex = self.push_vertex(id, first);
+        let curve = Some(Arc::new(curve));
+        let edge = self.push_edge(Edge { entity: id, curve, start: vertex, end: vertex, same_sense: true });
+        let outer = self.record(id)?.is(Kind::OuterBoundaryCurve);
+        Ok(FaceLoop { entity: id, uses: vec![EdgeUse { edge, forward: true }], pole: None, outer })
     }
 
     /// The straight edges between the points of a POLY_LOOP; each pair of points has one edge in all loops.
