@@ -203,9 +203,9 @@ impl<'a> Builder<'a> {
         let curve = self.geometry.curve(id)?;
         let [start, end] = curve.domain();
         let (first, last, middle) = (curve.point(start), curve.point(end), curve.point(0.5 * (start + end)));
-        let gap = (last - first).norm();
-        // Written so that not-a-number, of infinite curves, is refused as well.
-        if !(gap <= CLOSED * (middle - first).norm()) {
+        // Not so for infinite curves either, whose ends are not numbers.
+        let closed = (last - first).norm() <= CLOSED * (middle - first).norm();
+        if !closed {
             return Err(Fault::new(id, "a boundary curve that is not closed"));
         }
         let vertex = self.push_vertex(id, first);
