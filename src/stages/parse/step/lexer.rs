@@ -151,6 +151,14 @@ pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
     (Kind::of(&buffer[..length]), after)
 }
 
+/// The place behind the keyword of the record at `at`, whatever it is.
+pub(super) fn behind_keyword(bytes: &[u8], at: usize) -> usize {
+    match bytes.get(at..).and_then(|rest| memchr3(b'(', b'/', b';', rest)) {
+        Some(length) if length > 0 && bytes[at + length] == b'(' => at + length,
+        _ => kind_at(bytes, at).1,
+    }
+}
+
 /// Copies the keyword at `at` in upper case without the spaces and line breaks inside; its length, and the place behind.
 fn keyword(bytes: &[u8], at: usize, buffer: &mut [u8; LONGEST_KEYWORD]) -> (usize, usize) {
     let (mut length, mut end) = (0, at);
@@ -169,7 +177,16 @@ fn keyword(bytes: &[u8], at: usize, buffer: &mut [u8; LONGEST_KEYWORD]) -> (usiz
 }
 
 /// Behind white space, comments and print control directives (`\N\`, `\F\`).
-pub(super) fn skip_space(bytes: &[u8], mut at: usize) -> usize {
+#[inline]
+pub(super) fn skip_space(bytes: &[u8], at: usize) -> usize {
+    match bytes.get(at) {
+        Some(0..=b' ' | b'/' | b'\\') => skip_long_space(bytes, at),
+        _ => at,
+    }
+}
+
+/// Kept apart: nearly all calls find a token at once.
+fn skip_long_space(bytes: &[u8], mut at: usize) -> usize {
     loop {
         match bytes.get(at) {
             Some(0..=b' ') => at += 1,

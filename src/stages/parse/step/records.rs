@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::cursor::Cursor;
 use super::keyword::Kind;
-use super::lexer::{Entry, Table, kind_at, skip_space};
+use super::lexer::{Entry, Table, behind_keyword, kind_at, skip_space};
 use crate::stages::parse::fault::{Fault, Read};
 
 /// The bytes of a file with the table of its instances.
@@ -84,7 +84,7 @@ impl<'a> Record<'a> {
         if self.kind == Kind::Complex {
             Cursor::over_parts(self.bytes, self.id, &self.parts, inheritance)
         } else {
-            Cursor::at(self.bytes, self.id, kind_at(self.bytes, self.start).1)
+            Cursor::at(self.bytes, self.id, behind_keyword(self.bytes, self.start))
         }
     }
 
