@@ -10,11 +10,15 @@ pub(super) type Why = &'static str;
 const NOT_FINITE: Why = "a number that is not finite";
 const NOT_POSITIVE: Why = "a length that is not positive";
 
-/// Checks all numbers of a curve.
+/// The most evaluations of plain curves and surfaces that one of a nested one may take.
+const MOST_EVALUATIONS: usize = 1000;
+
+/// Checks all numbers of a curve, and that it is not nested so deep that its evaluation takes for ever.
 ///
 /// # Errors
 /// The reason, where it cannot be evaluated.
 pub(super) fn curve(curve: &Curve) -> Result<(), Why> {
+    nested(curve)?;
     match curve {
         Curve::Line { origin, direction } => {
             points(std::slice::from_ref(origin))?;
@@ -43,16 +47,45 @@ pub(super) fn curve(curve: &Curve) -> Result<(), Why> {
     }
 }
 
+/// Checks that a curve is not nested so deep that its evaluation takes for ever; asked for each level, since making a
+/// curve of another one evaluates that one.
+pub(super) fn nested(curve: &Curve) -> Result<(), Why> {
+    if evaluations(curve) > MOST_EVALUATIONS { Err("curves nested too deep") } else { Ok(()) }
+}
+
+/// About how many evaluations of plain curves one of this curve takes: a trimmed one looks at several points for the
+/// period of its basis, an offset one for its derivatives.
+fn evaluations(curve: &Curve) -> usize {
+    match curve {
+        Curve::Trimmed { basis, .. } => evaluations(basis).saturating_mul(9),
+        Curve::Offset { basis, .. } => evaluations(basis).saturating_mul(4),
+        Curve::Composite(pieces) => pieces.iter().map(|(piece, _)| evaluations(piece)).max().unwrap_or(1),
+        _ => 1,
+    }
+}
+
+fn surface_evaluations(surface: &Surface) -> usize {
+    match surface {
+        Surface::Offset { basis, .. } => surface_evaluations(basis).saturating_mul(10),
+        Surface::Rectangular { basis, .. } => surface_evaluations(basis),
+        Surface::Revolution { profile, .. } | Surface::Extrusion { profile, .. } => evaluations(profile),
+        _ => 1,
+    }
+}
+
 fn bounded(piece: &Curve) -> Result<(), Why> {
     curve(piece)?;
     if piece.domain().iter().all(|t| t.is_finite()) { Ok(()) } else { Err("a piece of a composite curve without end") }
 }
 
-/// Checks all numbers of a surface.
+/// Checks all numbers of a surface, and that it is not nested so deep that its evaluation takes for ever.
 ///
 /// # Errors
 /// The reason, where it cannot be evaluated.
 pub(super) fn surface(surface: &Surface) -> Result<(), Why> {
+    if surface_evaluations(surface) > MOST_EVALUATIONS {
+        return Err("surfaces nested too deep");
+    }
     match surface {
         Surface::Plane(placement) => placed(placement, &[]),
         Surface::Cylinder { placement, radius } | Surface::Sphere { placement, radius } => {

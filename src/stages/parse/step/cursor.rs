@@ -4,8 +4,10 @@
 
 use memchr::memchr;
 
+use super::effort::Effort;
 use super::keyword::Kind;
 use super::lexer::{kind_at, number, skip_space};
+use super::records::File;
 use crate::stages::parse::fault::{Fault, Read};
 
 /// A place in the parameters of an instance; each call reads one parameter and the comma behind it.
@@ -18,26 +20,33 @@ pub(super) struct Cursor<'a, 'r> {
     depth: u32,
     parts: &'r [(Kind, usize)],
     rest: &'static [Kind],
+    effort: &'a Effort,
+    /// Up to here the effort is counted.
+    counted: usize,
 }
 
 impl<'a, 'r> Cursor<'a, 'r> {
     /// At the first parameter of the list that opens at `place`.
-    pub fn at(bytes: &'a [u8], entity: u64, place: usize) -> Self {
-        let mut cursor = Self { bytes, at: place, entity, depth: 0, parts: &[], rest: &[] };
+    pub fn at(file: File<'a>, entity: u64, place: usize) -> Self {
+        let mut cursor = Self::new(file, entity, place, &[], &[]);
         cursor.open(place);
         cursor
     }
 
+    fn new(file: File<'a>, entity: u64, at: usize, parts: &'r [(Kind, usize)], rest: &'static [Kind]) -> Self {
+        Self { bytes: file.bytes, at, entity, depth: 0, parts, rest, effort: &file.table.effort, counted: at }
+    }
+
     /// At the first parameter of those `parts` whose kinds are listed, in the order of the list.
-    pub fn over_parts(bytes: &'a [u8], entity: u64, parts: &'r [(Kind, usize)], kinds: &'static [Kind]) -> Self {
-        let mut cursor = Self { bytes, at: bytes.len(), entity, depth: 0, parts, rest: kinds };
+    pub fn over_parts(file: File<'a>, entity: u64, parts: &'r [(Kind, usize)], kinds: &'static [Kind]) -> Self {
+        let mut cursor = Self::new(file, entity, file.bytes.len(), parts, kinds);
         cursor.next_part();
         cursor
     }
 
     /// The place behind the value, or list, at `place`.
-    pub fn behind(bytes: &'a [u8], place: usize) -> usize {
-        let mut cursor = Self { bytes, at: place, entity: 0, depth: 0, parts: &[], rest: &[] };
+    pub fn behind(file: File<'a>, place: usize) -> usize {
+        let mut cursor = Self::new(file, 0, place, &[], &[]);
         cursor.skip_balanced();
         cursor.at
     }
@@ -47,6 +56,7 @@ impl<'a, 'r> Cursor<'a, 'r> {
         let at = skip_space(self.bytes, at);
         let opened = self.bytes.get(at) == Some(&b'(');
         self.at = if opened { skip_space(self.bytes, at + 1) } else { self.bytes.len() };
+        self.counted = if opened { at } else { self.at };
     }
 
     /// Goes on with the next part of `rest` that the instance has.
@@ -88,6 +98,8 @@ impl<'a, 'r> Cursor<'a, 'r> {
         if self.bytes.get(self.at) == Some(&b',') {
             self.at = skip_space(self.bytes, self.at + 1);
         }
+        self.effort.spend(self.at - self.counted);
+        self.counted = self.at;
     }
 
     /// Skips one parameter of any form.

@@ -8,6 +8,7 @@ use super::splines;
 use crate::brep::Curve;
 use crate::geometry::Point;
 use crate::stages::parse::fault::{Fault, Read};
+use crate::stages::parse::sound;
 
 /// How deep curves may be made of curves.
 const DEEPEST_CURVE: u32 = 16;
@@ -17,9 +18,11 @@ const CONIC: &[Kind] =
     &[Kind::RepresentationItem, Kind::Conic, Kind::Circle, Kind::Ellipse, Kind::Parabola, Kind::Hyperbola];
 
 impl Geometry<'_> {
-    /// Any curve in space.
+    /// Any curve in space that can be evaluated.
     pub fn curve(&self, id: u64) -> Read<Curve> {
-        self.nested_curve(id, 0)
+        let curve = self.nested_curve(id, 0)?;
+        sound::curve(&curve).map_err(|why| Fault::new(id, why))?;
+        Ok(curve)
     }
 
     /// A curve that others are made of.
@@ -31,6 +34,7 @@ impl Geometry<'_> {
         let record = self.file.record(id)?;
         for kind in record.kinds() {
             if let Some(curve) = self.curve_of_kind(&record, kind, depth)? {
+                sound::nested(&curve).map_err(|why| record.fault(why))?;
                 return Ok(curve);
             }
         }
@@ -95,6 +99,7 @@ impl Geometry<'_> {
 
     fn polyline(&self, record: &Record) -> Read<Curve> {
         let ids = record.fields(&[Kind::RepresentationItem, Kind::Polyline]).skip_many(1).references()?;
+        self.spend(record.id, ids.len())?;
         let points = ids.into_iter().map(|id| self.point(id)).collect::<Read<Vec<_>>>()?;
         if points.len() < 2 {
             Err(record.fault("a polyline of fewer than two points"))

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use rustc_hash::FxHashMap;
+
 use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::records::Record;
@@ -29,7 +31,7 @@ impl Builder<'_> {
         Ok(faces)
     }
 
-    fn triangulated_face(&self, id: u64) -> Read<LooseFace> {
+    fn triangulated_face(&mut self, id: u64) -> Read<LooseFace> {
         let record = self.record(id)?;
         let (linked, complex) = match record.kind {
             Kind::TriangulatedFace => (true, false),
@@ -50,12 +52,16 @@ impl Builder<'_> {
         } else {
             rows(&mut cursor, |row| triangles.extend(row.first_chunk::<3>().copied()))?;
         }
+        self.geometry.spend(id, triangles.len())?;
         let facets = facets(&record, &coordinates, &used, &triangles)?;
         Ok(LooseFace { entity: id, geometry: FaceGeometry::Faceted(Arc::new(facets)), loops: Vec::new() })
     }
 
     /// COORDINATES_LIST, in mm.
-    fn coordinates(&self, id: u64) -> Read<Vec<Point>> {
+    fn coordinates(&mut self, id: u64) -> Read<Arc<[Point]>> {
+        if let Some(known) = self.coordinates.get(&id) {
+            return Ok(known.clone());
+        }
         let record = self.record(id)?;
         if record.kind != Kind::CoordinatesList {
             return Err(record.fault("a list of coordinates was expected"));
@@ -67,6 +73,8 @@ impl Builder<'_> {
             points.push(Point::new(x, y, z) * self.geometry.units.length);
             Ok(())
         })?;
+        let points: Arc<[Point]> = points.into();
+        self.coordinates.insert(id, points.clone());
         Ok(points)
     }
 }
@@ -107,7 +115,7 @@ fn add_fan(fan: &[usize], triangles: &mut Vec<[usize; 3]>) {
 
 /// Only the points that triangles use; triangles without three different points are left out.
 fn facets(record: &Record, coordinates: &[Point], used: &[usize], triangles: &[[usize; 3]]) -> Read<Facets> {
-    let mut place = vec![u32::MAX; coordinates.len()];
+    let mut places: FxHashMap<usize, u32> = FxHashMap::default();
     let mut facets = Facets::default();
     for triangle in triangles {
         let mut corners = [0; 3];
@@ -116,11 +124,10 @@ fn facets(record: &Record, coordinates: &[Point], used: &[usize], triangles: &[[
             let point = if used.is_empty() { Some(index) } else { used.get(index.wrapping_sub(1)).copied() };
             let at = point.map(|p| p.wrapping_sub(1)).filter(|&p| p < coordinates.len());
             let at = at.ok_or_else(|| record.fault("a triangle with a point that is not there"))?;
-            if place[at] == u32::MAX {
-                place[at] = facets.points.len() as u32;
+            *corner = *places.entry(at).or_insert_with(|| {
                 facets.points.push(coordinates[at]);
-            }
-            *corner = place[at];
+                facets.points.len() as u32 - 1
+            });
         }
         if corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0] {
             facets.triangles.push(corners);

@@ -2,12 +2,15 @@
 
 use super::records::File;
 
+const LONGEST_NAME: usize = 400;
+
 /// The first name of FILE_SCHEMA in upper case without its object identifier; empty where there is none.
 pub(super) fn schema(file: &File) -> String {
     let Some(start) = file.table.schema else { return String::new() };
     let quoted = file.bytes[start..].split(|b| *b == b';').next().unwrap_or_default();
     let name = quoted.split(|b| *b == b'\'').nth(1).unwrap_or_default();
-    let text = String::from_utf8_lossy(name);
+    // No schema has such a long name: a giant string is not copied.
+    let text = String::from_utf8_lossy(&name[..name.len().min(LONGEST_NAME)]);
     let word = text.split(['{', ' ']).find(|w| !w.is_empty()).unwrap_or_default();
     word.chars().take(100).collect::<String>().to_uppercase()
 }

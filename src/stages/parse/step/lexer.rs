@@ -2,8 +2,9 @@
 //!
 //! Nothing is decoded or copied: 16 bytes an instance, whatever the order of the ids.
 
-use memchr::{memchr, memchr_iter, memchr3, memmem};
+use memchr::{memchr, memchr3, memmem};
 
+use super::effort::Effort;
 use super::keyword::Kind;
 use crate::cancel::{Cancel, Cancelled};
 
@@ -45,12 +46,14 @@ pub(super) struct Table {
     /// Whether the file starts or ends as Part 21 says.
     pub marked: bool,
     pub warnings: Vec<String>,
+    pub effort: Effort,
 }
 
 /// Finds all instances of all DATA sections, and what lies outside of any section too.
 pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
     let bytes = &bytes[..bytes.len().min(LONGEST_FILE)];
-    let mut table = Table { entries: Vec::with_capacity(bytes.len() / 96), ..Table::default() };
+    let effort = Effort::new(bytes.len(), cancel);
+    let mut table = Table { entries: Vec::with_capacity(bytes.len() / 96), effort, ..Table::default() };
     let mut broken_strings = 0_usize;
     let (mut at, mut count, mut ended) = (0, 0, false);
     loop {
@@ -233,8 +236,17 @@ fn statement_end(bytes: &[u8], mut at: usize) -> End {
 
 /// The first line of `bytes[from..to]` that starts as an instance does: then this is no string.
 fn instance_in(bytes: &[u8], from: usize, to: usize) -> Option<usize> {
-    let starts = memchr_iter(b'\n', &bytes[from..to]).map(|n| skip_space(&bytes[..to], from + n + 1));
-    starts.into_iter().find(|&at| bytes.get(at) == Some(&b'#') && instance(&bytes[..to], at).is_some())
+    // Only plain space is passed over: looking for the ends of comments again and again would take quadratic time.
+    let plain_space = |at: usize| at + bytes[at..to].iter().take_while(|b| **b <= b' ').count();
+    let mut at = from;
+    while let Some(n) = memchr(b'\n', &bytes[at..to]) {
+        at = plain_space(at + n + 1);
+        let number = number(&bytes[..to], at + 1).filter(|_| at < to && bytes[at] == b'#');
+        if number.is_some_and(|(_, end)| bytes[..to].get(plain_space(end)) == Some(&b'=')) {
+            return Some(at);
+        }
+    }
+    None
 }
 
 /// Sorts by id; of several instances with one id the first of the file stays.

@@ -14,6 +14,7 @@ mod assembly;
 mod bodies;
 mod cursor;
 mod curves;
+mod effort;
 mod facets;
 mod free_curves;
 mod header;
@@ -65,6 +66,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
     builder.model.unit_mm = units.length;
     warnings.into_iter().for_each(|w| builder.notes.warn(w));
     build(&mut builder, &assembly, options, cancel)?;
+    cancel.check().map_err(stopped)?;
     let Builder { model, mut notes, .. } = builder;
     assembly.faults.iter().for_each(|(id, fault)| notes.skip(*id, fault.clone()));
     let (skipped, warnings) = notes.finish();

@@ -8,7 +8,7 @@ use super::lexer::{Entry, Table, behind_keyword, kind_at, skip_space};
 use crate::stages::parse::fault::{Fault, Read};
 
 /// The bytes of a file with the table of its instances.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct File<'a> {
     pub bytes: &'a [u8],
     pub table: &'a Table,
@@ -28,32 +28,34 @@ impl<'a> File<'a> {
     }
 
     /// The record of an instance.
+    ///
+    /// # Errors
+    /// Where there is none, where the file was read too often already, and when cancelled.
     pub fn record(&self, id: u64) -> Read<Record<'a>> {
+        self.table.effort.check(id)?;
         let entry = self.entry(id).ok_or_else(|| Fault::new(id, "there is no such instance"))?;
         Ok(self.record_of(entry))
     }
 
+    /// The parts of a complex instance, each with the place of its parameters.
+    fn parts(&self, start: usize) -> Vec<(Kind, usize)> {
+        let mut found = Vec::new();
+        let mut at = skip_space(self.bytes, start);
+        while self.bytes.get(at).is_some_and(u8::is_ascii_alphabetic) {
+            let (kind, after) = kind_at(self.bytes, at);
+            found.push((kind, after));
+            at = skip_space(self.bytes, Cursor::behind(*self, after));
+        }
+        self.table.effort.spend(at - start);
+        found
+    }
+
     /// The record of a table entry.
     pub fn record_of(&self, entry: Entry) -> Record<'a> {
-        let mut record =
-            Record { id: entry.id, kind: entry.kind(), bytes: self.bytes, start: entry.start(), parts: Vec::new() };
-        if record.kind == Kind::Complex {
-            record.parts = parts(self.bytes, entry.start() + 1);
-        }
-        record
+        let (kind, start) = (entry.kind(), entry.start());
+        let parts = if kind == Kind::Complex { self.parts(start + 1) } else { Vec::new() };
+        Record { id: entry.id, kind, file: *self, start, parts }
     }
-}
-
-/// The parts of a complex instance, each with the place of its parameters.
-fn parts(bytes: &[u8], start: usize) -> Vec<(Kind, usize)> {
-    let mut found = Vec::new();
-    let mut at = skip_space(bytes, start);
-    while bytes.get(at).is_some_and(u8::is_ascii_alphabetic) {
-        let (kind, after) = kind_at(bytes, at);
-        found.push((kind, after));
-        at = skip_space(bytes, Cursor::behind(bytes, after));
-    }
-    found
 }
 
 /// An instance: of one type, or of several (a complex instance) with the parameters of each.
@@ -61,7 +63,7 @@ fn parts(bytes: &[u8], start: usize) -> Vec<(Kind, usize)> {
 pub(super) struct Record<'a> {
     pub id: u64,
     pub kind: Kind,
-    bytes: &'a [u8],
+    file: File<'a>,
     start: usize,
     parts: Vec<(Kind, usize)>,
 }
@@ -82,9 +84,11 @@ impl<'a> Record<'a> {
     /// order in which a simple instance has them.
     pub fn fields<'r>(&'r self, inheritance: &'static [Kind]) -> Cursor<'a, 'r> {
         if self.kind == Kind::Complex {
-            Cursor::over_parts(self.bytes, self.id, &self.parts, inheritance)
+            Cursor::over_parts(self.file, self.id, &self.parts, inheritance)
         } else {
-            Cursor::at(self.bytes, self.id, behind_keyword(self.bytes, self.start))
+            let place = behind_keyword(self.file.bytes, self.start);
+            self.file.table.effort.spend(place - self.start);
+            Cursor::at(self.file, self.id, place)
         }
     }
 
@@ -94,7 +98,7 @@ impl<'a> Record<'a> {
             return Some(self.fields(&[]));
         }
         let &(_, at) = self.parts.iter().find(|p| p.0 == kind)?;
-        Some(Cursor::at(self.bytes, self.id, at))
+        Some(Cursor::at(self.file, self.id, at))
     }
 
     /// An error that blames this instance.

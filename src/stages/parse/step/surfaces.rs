@@ -8,6 +8,7 @@ use super::splines;
 use crate::brep::{Curve, Surface};
 use crate::stages::parse::fault::{Fault, Read};
 use crate::stages::parse::moved::moved_surface;
+use crate::stages::parse::sound;
 
 /// How deep surfaces may be made of surfaces.
 const DEEPEST_SURFACE: u32 = 16;
@@ -25,9 +26,11 @@ const SWEPT: &[Kind] =
     &[Kind::RepresentationItem, Kind::SweptSurface, Kind::SurfaceOfRevolution, Kind::SurfaceOfLinearExtrusion];
 
 impl Geometry<'_> {
-    /// Any surface.
+    /// Any surface that can be evaluated.
     pub fn surface(&self, id: u64) -> Read<Surface> {
-        self.nested_surface(id, 0)
+        let surface = self.nested_surface(id, 0)?;
+        sound::surface(&surface).map_err(|why| Fault::new(id, why))?;
+        Ok(surface)
     }
 
     fn nested_surface(&self, id: u64, depth: u32) -> Read<Surface> {

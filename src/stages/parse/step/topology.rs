@@ -34,6 +34,8 @@ pub(super) struct Builder<'a> {
     straight_edges: FxHashMap<[u64; 2], EdgeId>,
     curves: FxHashMap<u64, Arc<Curve>>,
     surfaces: FxHashMap<u64, Arc<Surface>>,
+    /// Lists of coordinates that triangles share.
+    pub(super) coordinates: FxHashMap<u64, Arc<[Point]>>,
 }
 
 /// A face that is not yet in a shell.
@@ -54,6 +56,7 @@ impl<'a> Builder<'a> {
             straight_edges: FxHashMap::default(),
             curves: FxHashMap::default(),
             surfaces: FxHashMap::default(),
+            coordinates: FxHashMap::default(),
         }
     }
 
@@ -65,6 +68,7 @@ impl<'a> Builder<'a> {
             self.straight_edges.clear();
             self.curves.clear();
             self.surfaces.clear();
+            self.coordinates.clear();
             self.geometry.units = units;
         }
     }
@@ -79,11 +83,12 @@ impl<'a> Builder<'a> {
         if record.is(Kind::OrientedFace) {
             return self.oriented_face(&record, depth);
         }
+        self.geometry.spend(id, 1)?;
         let mut cursor = record.fields(FACE);
         let bounds = cursor.skip_many(1).references()?;
         if record.is(Kind::Subface) {
             let parent = self.parent_face(cursor.reference()?, depth)?;
-            return Ok(LooseFace { entity: id, loops: self.bounds(&bounds)?, geometry: parent.geometry });
+            return Ok(LooseFace { entity: id, loops: self.bounds(id, &bounds)?, geometry: parent.geometry });
         }
         let geometry = if record.is(Kind::AdvancedFace) || record.is(Kind::FaceSurface) {
             let surface = self.surface(cursor.reference()?)?;
@@ -93,7 +98,7 @@ impl<'a> Builder<'a> {
         } else {
             return Err(record.fault("a face was expected"));
         };
-        Ok(LooseFace { entity: id, loops: self.bounds(&bounds)?, geometry })
+        Ok(LooseFace { entity: id, loops: self.bounds(id, &bounds)?, geometry })
     }
 
     fn parent_face(&mut self, id: u64, depth: u32) -> Read<LooseFace> {
@@ -154,7 +159,8 @@ impl<'a> Builder<'a> {
         Ok(surface)
     }
 
-    fn bounds(&mut self, ids: &[u64]) -> Read<Vec<FaceLoop>> {
+    fn bounds(&mut self, face: u64, ids: &[u64]) -> Read<Vec<FaceLoop>> {
+        self.geometry.spend(face, ids.len())?;
         ids.iter().map(|id| self.bound(*id)).collect()
     }
 
