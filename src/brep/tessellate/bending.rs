@@ -12,6 +12,9 @@ const LINES: [f64; 4] = [0.0, 0.35, 0.65, 1.0];
 /// between rows that bend more fold over, however flat the surface is.
 const SIDEWAYS: f64 = 0.25;
 
+/// Bows smaller than this share of the deflection are too small for the turn of the normal to matter, as for edges.
+const HARDLY: f64 = 0.05;
+
 /// How far the rows of samples in one direction are from straight.
 #[derive(Clone, Copy, Default)]
 struct Bend {
@@ -94,11 +97,11 @@ impl Bend {
         self.length = self.length.min(length);
     }
 
-    /// Steps for the deflection and for the angle of the normals.
+    /// Steps for the deflection and for the angle of the normals, unless those turn where nothing is to be seen.
     fn need(&self, fineness: &Fineness) -> f64 {
-        let bent = self.sagitta > 0.02 * fineness.deflection;
-        let by_angle = if bent { 0.5 * self.samples * self.angle / fineness.angle } else { 0.0 };
-        self.steps(self.sagitta, fineness.deflection).max(by_angle).clamp(1.0, MAX_LINES as f64)
+        let by_angle = 0.5 * self.samples * self.angle / fineness.angle;
+        let seen = self.steps(self.sagitta, HARDLY * fineness.deflection);
+        self.steps(self.sagitta, fineness.deflection).max(by_angle.min(seen)).clamp(1.0, MAX_LINES as f64)
     }
 
     /// Steps so that no triangle folds over between rows that are `apart` mm from each other.
