@@ -312,3 +312,33 @@ fn along_pole(chart: &Chart, side: usize, last: Uv, pole: Uv, out: Uv, flipped: 
     }
     [enter, leave]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::Surface;
+    use crate::brep::nurbs::NurbsSurface;
+
+    #[test]
+    fn neighbours_far_apart_in_the_parameter_space_are_a_jump() {
+        let corners = [[0.0, 0.0, 0.0], [0.0, 2.0, 0.0], [3.0, 0.0, 0.0], [3.0, 2.0, 0.0]].map(Point::from);
+        let surface = Surface::Nurbs(NurbsSurface::bilinear(corners.to_vec()));
+        let chart = Chart::new(&surface, true, &[], 1.0);
+        let points = [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.0, 0.2, 0.0]].map(Point::from);
+        let mapped = |u: f64| [[0.0, 0.0], [u, 0.0], [0.0, 0.1]].map(|uv| (uv, uv, None));
+        assert!(!jumps(&chart, &points, &mapped(0.1)));
+        assert!(jumps(&chart, &points, &mapped(0.9)));
+    }
+
+    #[test]
+    fn a_chain_falls_apart_at_its_seams() {
+        let along = |edge: u32, forward: bool| EdgeUse { edge: EdgeId(edge), forward };
+        // Bottom, seam, top, seam: two rings and one seam.
+        let (mut chains, mut seams) = (Vec::new(), Vec::new());
+        let wall = vec![along(0, true), along(1, true), along(2, false), along(1, false)];
+        split_at_seams(wall, &mut chains, &mut seams);
+        chains.sort_by_key(|c| c[0].edge);
+        assert_eq!(chains, [[along(0, true)], [along(2, false)]]);
+        assert_eq!(seams, [EdgeId(1)]);
+    }
+}

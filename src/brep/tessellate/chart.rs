@@ -255,3 +255,52 @@ impl<'a> Chart<'a> {
         counts.map(|n| n.clamp(1, MAX_LINES))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::Placement;
+    use crate::geometry::Vector;
+    use std::f64::consts::{FRAC_PI_4, TAU};
+
+    fn axes() -> Placement {
+        Placement { origin: Point::origin(), x: Vector::x(), y: Vector::y(), z: Vector::z() }
+    }
+
+    #[test]
+    fn images_lie_whole_turns_away() {
+        let surface = Surface::Cylinder { placement: axes(), radius: 1.0 };
+        let chart = Chart::new(&surface, true, &[], 1.0);
+        let images: Vec<Uv> = chart.images([1.0, 5.0], [-TAU, TAU, 0.0, 9.0]).collect();
+        assert_eq!(images, [[1.0 - 2.0 * TAU, 5.0], [1.0 - TAU, 5.0], [1.0, 5.0], [1.0 + TAU, 5.0]]);
+    }
+
+    #[test]
+    fn a_cone_ends_at_its_apex_on_the_side_of_its_paths() {
+        let surface = Surface::Cone { placement: axes(), radius: 1.0, half_angle: FRAC_PI_4 };
+        for (v, side) in [(2.0, 2), (-3.0, 3)] {
+            let mut chart = Chart::new(&surface, true, &[], 1.0);
+            chart.settle(&[Path { uv: vec![[0.0, v]], ..Path::default() }], &[]);
+            assert!(chart.poles[side] && (chart.domain[side] + 1.0).abs() < 1e-12);
+            assert!(!chart.poles[5 - side]);
+        }
+    }
+
+    #[test]
+    fn closed_surfaces_have_no_border() {
+        let closed = |surface: Surface| Chart::new(&surface, true, &[], 1.0).is_closed();
+        assert!(closed(Surface::Sphere { placement: axes(), radius: 1.0 }));
+        assert!(closed(Surface::Torus { placement: axes(), major: 3.0, minor: 1.0 }));
+        assert!(closed(Surface::Torus { placement: axes(), major: 1.0, minor: 3.0 }));
+        assert!(!closed(Surface::Cylinder { placement: axes(), radius: 1.0 }));
+    }
+
+    #[test]
+    fn steps_follow_the_radius() {
+        let surface = Surface::Cylinder { placement: axes(), radius: 1.0 };
+        let chart = Chart::new(&surface, true, &[], 1.0);
+        let steps = |deflection: f64, angle: f64| chart.steps([0.0, TAU, 0.0, 1.0], &Fineness { deflection, angle });
+        // By the angle TAU / 0.35 = 17.95; by the deflection TAU / (2 acos(1 - 0.005)) = 31.4.
+        assert_eq!((steps(1.0, 0.35), steps(0.005, 0.35)), ([18, 1], [32, 1]));
+    }
+}

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::Point;
-use crate::stages::parse::parse;
+use crate::stages::parse::{Parsed, parse};
 
 /// A tetrahedron as a faceted B-rep, with corners at the origin and one unit along each axis, in units of metres.
 const TETRAHEDRON: &str = "
@@ -59,6 +59,109 @@ fn a_parsed_tetrahedron_has_its_area_and_volume() {
     let area = 1.5 + 0.75_f64.sqrt();
     assert!((parsed.measures.area / 1e6 - area).abs() < 1e-9);
     assert!((parsed.measures.volume / 1e9 - 1.0 / 6.0).abs() < 1e-9);
+}
+
+/// A representation in mm of these items, and what they are made of.
+fn shape(items: &str, entities: &str) -> Parsed {
+    let text = format!(
+        "DATA;#900=SHAPE_REPRESENTATION('',({items}),#901);#901=(GEOMETRIC_REPRESENTATION_CONTEXT(3)
+        GLOBAL_UNIT_ASSIGNED_CONTEXT((#902))REPRESENTATION_CONTEXT('',''));
+        #902=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));#903=CARTESIAN_POINT('',(0.,0.,0.));
+        #904=AXIS2_PLACEMENT_3D('',#903,$,$);{entities}
+        ENDSEC;END-ISO-10303-21;"
+    );
+    let parsed = parse(text.as_bytes(), &Options::default(), None, &Cancel::new()).unwrap();
+    assert!(parsed.skipped.is_empty() && parsed.warnings.is_empty(), "{:?} {:?}", parsed.skipped, parsed.warnings);
+    parsed
+}
+
+/// The faces #n1 to #n4 of a tetrahedron with a corner at (at, at, at) and edges of `size` along the axes.
+fn tetrahedron(n: u32, at: f64, size: f64) -> String {
+    let far = at + size;
+    let points = [[at, at, at], [far, at, at], [at, far, at], [at, at, far]];
+    let mut text = String::new();
+    for (i, [x, y, z]) in (5..).zip(points) {
+        text += &format!("#{n}{i}=CARTESIAN_POINT('',({x:?},{y:?},{z:?}));");
+    }
+    for (i, [a, b, c]) in (1..).zip([[5, 7, 6], [5, 6, 8], [5, 8, 7], [6, 7, 8]]) {
+        text += &format!("#{n}{i}0=POLY_LOOP('',(#{n}{a},#{n}{b},#{n}{c}));#{n}{i}1=FACE_BOUND('',#{n}{i}0,.T.);");
+        text += &format!("#{n}{i}=FACE('',(#{n}{i}1));");
+    }
+    text
+}
+
+/// Within 1e-4 of it.
+fn near(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() < 1e-4
+}
+
+#[test]
+fn a_void_counts_less() {
+    let (outer, void) = (tetrahedron(1, 0.0, 1.0), tetrahedron(2, 0.1, 0.5));
+    let shells = "#3=CLOSED_SHELL('',(#11,#12,#13,#14));#4=CLOSED_SHELL('',(#21,#22,#23,#24));
+        #5=ORIENTED_CLOSED_SHELL('',*,#4,.F.);#6=BREP_WITH_VOIDS('',#3,(#5));";
+    let parsed = shape("#6", &format!("{outer}{void}{shells}"));
+    assert_eq!((parsed.model.bodies[0].solid, parsed.model.shells.len()), (true, 2));
+    assert!(near(parsed.measures.area, 1.25 * (1.5 + 0.75_f64.sqrt())), "{}", parsed.measures.area);
+    assert!(near(parsed.measures.volume, 0.875 / 6.0), "{}", parsed.measures.volume);
+}
+
+#[test]
+fn open_shells_are_sheets() {
+    let shells = "#3=OPEN_SHELL('',(#11,#12,#13));#6=SHELL_BASED_SURFACE_MODEL('',(#3));";
+    let parsed = shape("#6", &format!("{}{shells}", tetrahedron(1, 0.0, 1.0)));
+    assert!(!parsed.model.bodies[0].solid && !parsed.model.shells[0].closed);
+    assert!(near(parsed.measures.area, 1.5), "{}", parsed.measures.area);
+}
+
+#[test]
+fn a_set_holds_surfaces_without_topology() {
+    // A disc of radius 1 between two half circles, a sphere of radius 1, and a copy of it twice as large beside it.
+    let surfaces = "#1=PLANE('',#904);#2=CIRCLE('',#904,1.);
+        #3=TRIMMED_CURVE('',#2,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(3.14159265358979)),.T.,.PARAMETER.);
+        #4=TRIMMED_CURVE('',#2,(PARAMETER_VALUE(3.14159265358979)),(PARAMETER_VALUE(6.28318530717959)),.T.,.PARAMETER.);
+        #5=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#3);#6=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#4);
+        #7=OUTER_BOUNDARY_CURVE('',(#5,#6),.F.);#8=CURVE_BOUNDED_SURFACE('',#1,(#7),.F.);
+        #10=SPHERICAL_SURFACE('',#904,1.);#11=CARTESIAN_POINT('',(5.,0.,0.));
+        #12=CARTESIAN_TRANSFORMATION_OPERATOR_3D('',$,$,#11,2.,$);#13=SURFACE_REPLICA('',#10,#12);
+        #14=GEOMETRIC_SET('',(#8,#10,#13,#2));";
+    let areas: Vec<f64> = shape("#14", surfaces).mesh.faces.iter().map(|f| f.area / std::f64::consts::PI).collect();
+    assert!(areas.len() == 3 && areas.iter().zip([1.0, 4.0, 16.0]).all(|(a, b)| near(*a, b)), "{areas:?}");
+}
+
+#[test]
+fn curves_on_surfaces_may_be_there_or_not() {
+    // A cylinder of radius 2 and height 5 with a seam; its parameter curves are not even there to be followed.
+    let solid = "#10=CARTESIAN_POINT('',(2.,0.,0.));#11=CARTESIAN_POINT('',(2.,0.,5.));#12=CARTESIAN_POINT('',(0.,0.,5.));
+        #13=AXIS2_PLACEMENT_3D('',#12,$,$);#14=VERTEX_POINT('',#10);#15=VERTEX_POINT('',#11);#16=DIRECTION('',(0.,0.,1.));
+        #20=CIRCLE('',#904,2.);#21=CIRCLE('',#13,2.);#22=VECTOR('',#16,1.);#23=LINE('',#10,#22);
+        #30=EDGE_CURVE('',#14,#14,#40,.T.);#31=EDGE_CURVE('',#15,#15,#41,.T.);#32=EDGE_CURVE('',#14,#15,#42,.T.);
+        #40=SURFACE_CURVE('',#20,(#998,#999),.PCURVE_S1.);#41=INTERSECTION_CURVE('',#21,(#998,#999),.PCURVE_S1.);
+        #42=SEAM_CURVE('',#23,(#998,#999),.PCURVE_S1.);
+        #50=ORIENTED_EDGE('',*,*,#30,.T.);#51=ORIENTED_EDGE('',*,*,#31,.F.);#52=ORIENTED_EDGE('',*,*,#32,.T.);
+        #53=ORIENTED_EDGE('',*,*,#32,.F.);#54=ORIENTED_EDGE('',*,*,#30,.F.);#55=ORIENTED_EDGE('',*,*,#31,.T.);
+        #60=EDGE_LOOP('',(#50,#52,#51,#53));#61=EDGE_LOOP('',(#54));#62=EDGE_LOOP('',(#55));
+        #63=FACE_BOUND('',#60,.T.);#64=FACE_BOUND('',#61,.T.);#65=FACE_BOUND('',#62,.T.);
+        #70=CYLINDRICAL_SURFACE('',#904,2.);#71=PLANE('',#904);#72=PLANE('',#13);
+        #80=ADVANCED_FACE('',(#63),#70,.T.);#81=ADVANCED_FACE('',(#64),#71,.F.);#82=ADVANCED_FACE('',(#65),#72,.T.);
+        #90=CLOSED_SHELL('',(#80,#81,#82));#91=MANIFOLD_SOLID_BREP('',#90);";
+    let without = solid.replace("#14,#14,#40", "#14,#14,#20").replace("#15,#15,#41", "#15,#15,#21");
+    for text in [solid.to_owned(), without.replace("#14,#15,#42", "#14,#15,#23")] {
+        let parsed = shape("#91", &text);
+        assert!(near(parsed.measures.area, 28.0 * std::f64::consts::PI), "{}", parsed.measures.area);
+        assert!(near(parsed.measures.volume, 20.0 * std::f64::consts::PI), "{}", parsed.measures.volume);
+    }
+}
+
+#[test]
+fn a_tessellated_solid_has_area_and_volume() {
+    let solid = "#1=COORDINATES_LIST('',4,((0.,0.,0.),(1.,0.,0.),(0.,1.,0.),(0.,0.,1.)));
+        #2=TRIANGULATED_FACE('',#1,4,((0.,0.,1.)),$,(),((1,3,2),(1,2,4),(1,4,3),(2,3,4)));
+        #3=TESSELLATED_SOLID('',(#2),$);";
+    let parsed = shape("#3", solid);
+    assert!(parsed.model.bodies[0].solid);
+    assert!(near(parsed.measures.area, 1.5 + 0.75_f64.sqrt()), "{}", parsed.measures.area);
+    assert!(near(parsed.measures.volume, 1.0 / 6.0), "{}", parsed.measures.volume);
 }
 
 #[test]
