@@ -1,5 +1,8 @@
 //! Area, centroid and flux of a trimmed surface: quadrature over the triangles of its parameter space, and over the
 //! slivers between the chords of its border and the true edges.
+//!
+//! The quadrature takes the middles of the sides, which is exact for quadratic functions (Strang and Fix 1973), and of
+//! the rules that are so the one that asks for the fewest points: neighbours share them.
 
 use super::boundary::Path;
 use super::chart::{Chart, Uv};
@@ -7,10 +10,6 @@ use super::domain::Patch;
 use super::triangulate::doubled_area;
 use crate::brep::Surface;
 use crate::geometry::{Point, Vector};
-
-/// Weights and places of the quadrature: three points, exact for quadratic functions (Strang and Fix 1973).
-const INNER: [[f64; 3]; 3] =
-    [[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0]];
 
 /// Integrals over a face.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,18 +47,12 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
         sum.moment += one.moment;
         sum.flux += sense * one.flux;
     };
-    let flat = matches!(*chart.surface, Surface::Plane(_));
-    let mut total = 0.0;
-    for t in &patch.triangles {
-        let corners = t.map(|i| patch.uv[i as usize]);
-        let area = 0.5 * doubled_area(&patch.uv, t);
-        total += area;
-        let mix = |w: [f64; 3]| [0, 1].map(|k| w[0] * corners[0][k] + w[1] * corners[1][k] + w[2] * corners[2][k]);
-        if flat {
-            at(mix([1.0 / 3.0; 3]), area);
-        } else {
-            INNER.iter().for_each(|&w| at(mix(w), area / 3.0));
-        }
+    let areas = patch.triangles.iter().map(|t| 0.5 * doubled_area(&patch.uv, t));
+    let total: f64 = areas.clone().sum();
+    if matches!(*chart.surface, Surface::Plane(_)) {
+        patch.triangles.iter().zip(areas).for_each(|(t, area)| at(centre(patch, t), area));
+    } else {
+        shared_sides(patch, areas).for_each(|(middle, area)| at(middle, area));
     }
     for (path, side) in paths.iter().zip(&patch.sides) {
         for i in 0..path.uv.len() {
@@ -70,6 +63,31 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
         }
     }
     sum
+}
+
+fn centre(patch: &Patch, triangle: &[u32; 3]) -> Uv {
+    let [a, b, c] = triangle.map(|i| patch.uv[i as usize]);
+    [(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0]
+}
+
+/// The middle of each side, with a third of the area of the triangles beside it.
+fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>) -> impl Iterator<Item = (Uv, f64)> {
+    let mut sides: Vec<([u32; 2], f64)> = Vec::with_capacity(3 * patch.triangles.len());
+    for ([a, b, c], area) in patch.triangles.iter().zip(areas) {
+        let ordered = [[a, b], [b, c], [c, a]].map(|[a, b]| [*a.min(b), *a.max(b)]);
+        sides.extend(ordered.map(|side| (side, area / 3.0)));
+    }
+    // Stable, so that equal sides are added up in one order.
+    sides.sort_by_key(|(side, _)| *side);
+    sides.dedup_by(|next, first| {
+        let same = next.0 == first.0;
+        first.1 += if same { next.1 } else { 0.0 };
+        same
+    });
+    sides.into_iter().map(|([a, b], area)| {
+        let (a, b) = (patch.uv[a as usize], patch.uv[b as usize]);
+        ([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], area)
+    })
 }
 
 /// Centre and signed area of the piece between a chord and the parabola through its ends and the true middle;
