@@ -11,6 +11,8 @@ const STEPS: usize = 30;
 const SMALL_STEP: f64 = 1e-12;
 /// Samples in each knot span when there is no hint.
 const SAMPLES: usize = 12;
+/// Lines and points this near to a plane, as a sine or a share of the size, lie in it.
+const COPLANAR: f64 = 1e-9;
 /// Nodes of the grid that finds a start when there is no hint.
 const MAX_NODES: usize = 16_384;
 
@@ -208,6 +210,9 @@ pub(super) fn project_revolution(
     hint: Option<[f64; 2]>,
 ) -> Option<[f64; 2]> {
     let q = axis.local(p);
+    if let Some(out) = plane_of_circle(profile, axis) {
+        return Some(project_turned_circle(profile, axis, &out, &q, hint.map(|h| h[1])));
+    }
     let rho = q.x.hypot(q.y);
     // Distance from the axis and height; the distance of a profile point has one sign along a sensible profile.
     let local = |a: &Vector| Vector::new(a.dot(&axis.x), a.dot(&axis.y), a.dot(&axis.z));
@@ -222,6 +227,43 @@ pub(super) fn project_revolution(
     let v = closest_by(profile, hint.map(|h| h[1]), error);
     let at = local(&(profile.derivatives(v)[0] - axis.origin.coords));
     Some([q.y.atan2(q.x) - at.y.atan2(at.x), v])
+}
+
+/// For a circle in one plane with the axis: the direction in that plane out from the axis, to the side where the
+/// circle's parameters begin.
+fn plane_of_circle(profile: &Curve, axis: &Placement) -> Option<Vector> {
+    let circle = match profile {
+        Curve::Trimmed { basis, .. } => &**basis,
+        other => other,
+    };
+    let Curve::Circle { placement, radius } = circle else { return None };
+    let off = (placement.origin - axis.origin).dot(&placement.z).abs();
+    if placement.z.dot(&axis.z).abs() > COPLANAR || off > COPLANAR * radius {
+        return None;
+    }
+    let out = placement.z.cross(&axis.z).normalize();
+    Some(if out.dot(&placement.x) < 0.0 { -out } else { out })
+}
+
+/// The point is turned into the plane of the circle on either side of the axis; `q`: its coordinates about the axis.
+/// Where both sides are as near, as on a circle about the axis, the one nearer to the hint counts.
+fn project_turned_circle(profile: &Curve, axis: &Placement, out: &Vector, q: &Vector, hint: Option<f64>) -> [f64; 2] {
+    let rho = q.x.hypot(q.y);
+    let [near, far] = [1.0, -1.0].map(|side| {
+        let at = axis.point(0.0, 0.0, q.z) + out * (side * rho);
+        let v = profile.project(&at, hint);
+        (side, v, (profile.point(v) - at).norm())
+    });
+    let apart = |v: f64| {
+        let off = v - hint.unwrap_or(near.1);
+        (off - std::f64::consts::TAU * (off / std::f64::consts::TAU).round()).abs()
+    };
+    let alike = (near.2 - far.2).abs() <= COPLANAR * (rho + q.z.abs());
+    let other = if alike { apart(far.1) < apart(near.1) } else { far.2 < near.2 };
+    let (side, v, _) = if other { far } else { near };
+    let beginning = out.dot(&axis.y).atan2(out.dot(&axis.x));
+    let turn = if side < 0.0 { std::f64::consts::PI } else { 0.0 };
+    [q.y.atan2(q.x) - beginning + turn, v]
 }
 
 /// The parameter of a curve that makes the vector `error(t)[0]` shortest; `error` gives two derivatives as well.
@@ -276,6 +318,23 @@ fn best_by(curve: &Curve, size: &impl Fn(f64) -> f64) -> f64 {
 mod tests {
     use super::*;
     use crate::brep::nurbs::NurbsSurface;
+
+    #[test]
+    fn a_circle_turned_about_an_axis_that_cuts_it_is_found_on_both_sides() {
+        // Radius 200, the axis 20 from the centre: both sides pass within 0.3 of each other near the axis.
+        let axis = Placement { origin: Point::new(1.0, 2.0, 3.0), x: Vector::x(), y: Vector::y(), z: Vector::z() };
+        let placement =
+            Placement { origin: Point::new(1.0, 22.0, 3.0), x: Vector::y(), y: Vector::z(), z: Vector::x() };
+        let profile = Box::new(Curve::Circle { placement, radius: 200.0 });
+        let surface = Surface::Revolution { profile, axis };
+        for v in [1.4, 1.6708, 1.6710, 1.7, 4.0] {
+            for u in [0.0, 2.5, 5.0] {
+                let p = surface.point(u, v);
+                let [a, b] = surface.project(&p, None).unwrap();
+                assert!((surface.point(a, b) - p).norm() < 1e-9, "{u} {v}: {a} {b}");
+            }
+        }
+    }
 
     #[test]
     fn points_near_a_collapsed_side_are_found() {

@@ -185,6 +185,13 @@ impl<'a> Chart<'a> {
         matches!(*self.surface, Surface::Nurbs(_) | Surface::Offset { .. })
     }
 
+    /// Whether there may be several places that look nearest from nearby: a turned profile passes a point on both
+    /// sides of the axis.
+    fn is_sampled(&self) -> bool {
+        let turned = matches!(*self.surface, Surface::Revolution { .. }) && self.domain.iter().all(|d| d.is_finite());
+        turned || self.is_free_form()
+    }
+
     /// The nearest point of the surface and how far it is: from `hint` if that leads to one nearer than `good`, else
     /// from several samples, as a coiled surface has many places that look nearest from nearby.
     pub fn nearest(&self, p: &Point, hint: Option<Uv>, good: f64) -> Option<(f64, Uv)> {
@@ -194,14 +201,14 @@ impl<'a> Chart<'a> {
         }
         let project = |hint| self.surface.project_within(self.periods, p, hint);
         let from = |hint: Option<Uv>| project(hint).map(|uv| ((self.point(uv) - p).norm(), uv));
-        if !self.is_free_form() {
+        if !self.is_sampled() {
             let near = from(hint);
             return match (near, hint) {
                 (Some(found), Some(_)) if found.0 > good => from(None).filter(|n| n.0 < found.0).or(near),
                 _ => near,
             };
         }
-        let mut best = hint.and_then(|hint| from(Some(hint)));
+        let mut best = if self.is_free_form() { hint.and_then(|hint| from(Some(hint))) } else { from(hint) };
         if best.is_none_or(|b| b.0 > good) {
             for start in self.samples.get_or_init(|| Samples::of(&self.surface)).nearest(p, MAX_STARTS) {
                 let found = from(Some(start));

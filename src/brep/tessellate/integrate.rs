@@ -11,6 +11,12 @@ use super::triangulate::doubled_area;
 use crate::brep::Surface;
 use crate::geometry::{Point, Vector};
 
+/// The centre of a triangle, as weights of its corners.
+const MIDDLE: [f64; 3] = [1.0 / 3.0; 3];
+/// Three points inside, exact for quadratic functions as well.
+const INNER: [[f64; 3]; 3] =
+    [[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0]];
+
 /// Integrals over a face.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Integrals {
@@ -49,10 +55,15 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
     };
     let areas = patch.triangles.iter().map(|t| 0.5 * doubled_area(&patch.uv, t));
     let total: f64 = areas.clone().sum();
-    if matches!(*chart.surface, Surface::Plane(_)) {
-        patch.triangles.iter().zip(areas).for_each(|(t, area)| at(centre(patch, t), area));
-    } else {
-        shared_sides(patch, areas).for_each(|(middle, area)| at(middle, area));
+    match *chart.surface {
+        Surface::Plane(_) => patch.triangles.iter().zip(areas).for_each(|(t, area)| at(mix(patch, t, MIDDLE), area)),
+        // The speed of a profile may jump from piece to piece, and sides lie where it does.
+        Surface::Extrusion { .. } | Surface::Revolution { .. } => {
+            patch.triangles.iter().zip(areas).for_each(|(t, area)| {
+                INNER.iter().for_each(|&w| at(mix(patch, t, w), area / 3.0));
+            })
+        }
+        _ => shared_sides(patch, areas).for_each(|(middle, area)| at(middle, area)),
     }
     for (path, side) in paths.iter().zip(&patch.sides) {
         for i in 0..path.uv.len() {
@@ -65,9 +76,10 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
     sum
 }
 
-fn centre(patch: &Patch, triangle: &[u32; 3]) -> Uv {
+/// The point of a triangle with these weights of its corners.
+fn mix(patch: &Patch, triangle: &[u32; 3], w: [f64; 3]) -> Uv {
     let [a, b, c] = triangle.map(|i| patch.uv[i as usize]);
-    [(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0]
+    [0, 1].map(|k| w[0] * a[k] + w[1] * b[k] + w[2] * c[k])
 }
 
 /// The middle of each side, with a third of the area of the triangles beside it.

@@ -13,6 +13,11 @@ use crate::geometry::Point;
 
 /// How far beside a path or seam it is looked whether the face is there, as a share of a period or of a segment.
 const NUDGE: f64 = 1e-4;
+/// Cut lines tried besides points of the paths.
+const EVEN_CANDIDATES: usize = 16;
+/// How far a cut line stays away from paths that it need not touch, as a share of the period: a path that wavers about
+/// it would fall to both sides of the strip.
+const CLEARANCE: f64 = 1e-3;
 /// Cut lines tried at most.
 const MAX_CANDIDATES: usize = 200;
 
@@ -325,13 +330,14 @@ impl Strip {
     }
 }
 
-/// A cut line that crosses few paths, preferably through a point of each path that goes round.
+/// A cut line that crosses few paths, through a point of each path that goes round and well clear of the others.
 fn best_cut(chart: &Chart, axis: usize, paths: &[Path]) -> Option<f64> {
     let period = chart.periods[axis]?;
     let start = chart.domain[2 * axis];
     let all = paths.iter().flat_map(|p| p.uv.iter().map(|uv| uv[axis]));
     let count = paths.iter().map(|p| p.uv.len()).sum::<usize>();
-    let candidates = all.step_by(count.div_ceil(MAX_CANDIDATES).max(1)).chain([start]);
+    let evenly = (0..EVEN_CANDIDATES).map(|k| start + period * k as f64 / EVEN_CANDIDATES as f64);
+    let candidates = all.step_by(count.div_ceil(MAX_CANDIDATES).max(1)).chain(evenly);
     let cost = |cut: f64| {
         let one = |path: &Path| {
             let rest = |uv: &Uv| ((uv[axis] - cut) / period).rem_euclid(1.0);
@@ -339,9 +345,16 @@ fn best_cut(chart: &Chart, axis: usize, paths: &[Path]) -> Option<f64> {
                 return if path.uv.iter().any(|uv| rest(uv).min(1.0 - rest(uv)) < 1e-9) { 0.0 } else { 0.1 };
             }
             let r = path.rectangle();
-            let clear =
-                ((r[2 * axis] - cut) / period - 1e-9).floor() == ((r[2 * axis + 1] - cut) / period + 1e-9).floor();
-            if clear { 0.0 } else { 1.0 }
+            let clear = |by: f64| {
+                ((r[2 * axis] - cut) / period - by).floor() == ((r[2 * axis + 1] - cut) / period + by).floor()
+            };
+            if clear(CLEARANCE) {
+                0.0
+            } else if clear(1e-9) {
+                0.01
+            } else {
+                1.0
+            }
         };
         paths.iter().map(one).sum::<f64>()
     };

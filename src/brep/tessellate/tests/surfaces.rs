@@ -48,11 +48,14 @@ fn a_line_turned_about_an_axis_is_a_frustum() {
 }
 
 #[test]
-fn an_arc_turned_about_an_axis_is_a_belt() {
-    let half =
-        Curve::Trimmed { basis: Box::new(upright(0.0, 0.0, 5.0)), range: [-FRAC_PI_2, FRAC_PI_2], forward: true };
-    let wall = Surface::Revolution { profile: Box::new(half), axis: at_height(0.0) };
-    between_circles(&wall, [[4.0, -3.0], [3.0, 4.0]], Some(upright(0.0, 0.0, 5.0)), 95.0 * PI, 434.0 / 3.0 * PI);
+fn an_arc_or_circle_turned_about_an_axis_is_a_belt() {
+    let circle = upright(0.0, 0.0, 5.0);
+    let basis = Box::new(circle.clone());
+    let half = Curve::Trimmed { basis, range: [-FRAC_PI_2, FRAC_PI_2], forward: true };
+    for profile in [half, circle.clone()] {
+        let wall = Surface::Revolution { profile: Box::new(profile), axis: at_height(0.0) };
+        between_circles(&wall, [[4.0, -3.0], [3.0, 4.0]], Some(circle.clone()), 95.0 * PI, 434.0 / 3.0 * PI);
+    }
 }
 
 #[test]
@@ -115,4 +118,20 @@ fn the_inside_of_a_torus_that_cuts_itself_is_a_lemon() {
     b.discs(Some((rim, 0.0)), None);
     let root = 3.0_f64.sqrt();
     b.check(4.0 * PI * (root - PI / 3.0) + PI, PI * (3.0 * root - 4.0 * PI / 3.0));
+}
+
+#[test]
+fn a_tube_may_end_in_circles_that_waver() {
+    // The ends of a quarter of a torus lie 1e-5 off their planes, to and fro: no cut may pass through them.
+    let mut b = Builder::new();
+    let ends = [0.0_f64, FRAC_PI_2].map(|u| {
+        let tilt = Vector::new(-u.sin(), u.cos(), 0.0) * 1e-5;
+        let (x, z) = (Vector::new(u.cos(), u.sin(), 0.0) + tilt, Vector::z());
+        let placement = Placement { origin: Point::origin() + x * 5.0, x, y: z, z: x.cross(&z) };
+        let start = b.vertex(placement.origin.x + 2.0 * x.x, placement.origin.y + 2.0 * x.y, 0.0);
+        b.edge(start, start, Some(Curve::Circle { placement, radius: 2.0 }))
+    });
+    let torus = Surface::Torus { placement: at_height(0.0), major: 5.0, minor: 2.0 };
+    b.face(torus, true, &[&[(ends[0], false)], &[(ends[1], true)]]);
+    b.check_area(10.0 * PI * PI, 0.02);
 }
