@@ -12,6 +12,11 @@ const GOOD: f64 = 0.02;
 /// Neighbouring points that are further apart than this share of the domain are looked at twice.
 const FAR_APART: f64 = 0.05;
 
+/// Seams of one face that are taken out: each costs a pass over the loop, and what is left bounds nothing.
+const MOST_SEAMS: usize = 256;
+/// Points of the border of one face at most: edges may be used again and again.
+const MOST_POINTS: usize = 1_000_000;
+
 /// A closed path in parameter space, unwrapped: it may leave the domain of a periodic surface.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Path {
@@ -77,14 +82,19 @@ pub(super) struct Border {
 }
 
 impl Border {
-    pub fn of(face: &Face, lines: &EdgeLines, degenerate: &[bool]) -> Self {
+    /// The border of a face; `None` where it has far too many points.
+    pub fn of(face: &Face, lines: &EdgeLines, degenerate: &[bool]) -> Option<Self> {
+        let uses = face.loops.iter().flat_map(|l| &l.uses);
+        if uses.map(|u| lines.line(u.edge).0.len()).sum::<usize>() > MOST_POINTS {
+            return None;
+        }
         let (mut chains, mut seams) = (Vec::new(), Vec::new());
         for face_loop in &face.loops {
             let uses = face_loop.uses.iter().copied().filter(|u| !degenerate[u.edge.index()]).collect();
             split_at_seams(uses, &mut chains, &mut seams);
         }
         let loops = chains.iter().map(|chain| polyline(chain, lines)).filter(|p| p[0].len() > 1).collect();
-        Self { loops, seams: seams.into_iter().map(|edge| half_way(edge, lines)).collect() }
+        Some(Self { loops, seams: seams.into_iter().map(|edge| half_way(edge, lines)).collect() })
     }
 
     /// All points of the loops.
@@ -97,12 +107,7 @@ impl Border {
 fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>, seams: &mut Vec<EdgeId>) {
     let mut open = vec![uses];
     while let Some(chain) = open.pop() {
-        let mut first: FxHashMap<(EdgeId, bool), usize> = FxHashMap::default();
-        let pairs = chain.iter().enumerate().filter_map(|(j, u)| {
-            first.entry((u.edge, u.forward)).or_insert(j);
-            first.get(&(u.edge, !u.forward)).map(|&i| (i, j))
-        });
-        let pair = pairs.min();
+        let pair = if seams.len() < MOST_SEAMS { first_pair(&chain) } else { None };
         match pair {
             Some((i, j)) => {
                 seams.push(chain[i].edge);
@@ -113,6 +118,16 @@ fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>, seams: &mut V
             None => {}
         }
     }
+}
+
+/// The places of the first use of an edge that has an opposite one, and of that.
+fn first_pair(chain: &[EdgeUse]) -> Option<(usize, usize)> {
+    let mut first: FxHashMap<(EdgeId, bool), usize> = FxHashMap::default();
+    let pairs = chain.iter().enumerate().filter_map(|(j, u)| {
+        first.entry((u.edge, u.forward)).or_insert(j);
+        first.get(&(u.edge, !u.forward)).map(|&i| (i, j))
+    });
+    pairs.min()
 }
 
 /// A point near the middle of an edge.
@@ -211,6 +226,7 @@ impl Tracer<'_> {
     }
 
     fn map(&mut self, p: &Point) -> Result<(Uv, Option<usize>), Unmapped> {
+        self.chart.cancel.check().map_err(|_| Unmapped { distance: f64::NAN })?;
         let (distance, uv) = self.chart.nearest(p, self.hint, self.good).ok_or(Unmapped { distance: f64::INFINITY })?;
         if distance.is_nan() || distance > self.far {
             return Err(Unmapped { distance });

@@ -10,6 +10,7 @@ use super::spindle::Part;
 use crate::brep::Surface;
 use crate::brep::project::Samples;
 use crate::brep::surface::Jet;
+use crate::cancel::Cancel;
 use crate::geometry::Point;
 
 /// Places from which the nearest point of a free-form surface is looked for.
@@ -39,6 +40,8 @@ pub(super) struct Chart<'a> {
     inner: Vec<Point>,
     /// Which part of a torus that cuts itself.
     part: Option<Part>,
+    /// Stops the long loops over one face; the caller asks again, whatever they found.
+    pub cancel: Cancel,
 }
 
 impl<'a> Chart<'a> {
@@ -62,9 +65,9 @@ impl<'a> Chart<'a> {
         let (domain, periods) = (surface.domain(), surface.periods());
         let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
             && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
-        let (flipped, poles, samples) = (!same_sense, [false; 4], OnceCell::new());
-        let mut chart =
-            Self { surface, domain, periods, flipped, wraps, poles, samples, inner: Vec::new(), part: None };
+        let (flipped, poles, samples, inner) = (!same_sense, [false; 4], OnceCell::new(), Vec::new());
+        let cancel = Cancel::new();
+        let mut chart = Self { surface, domain, periods, flipped, wraps, poles, samples, inner, part: None, cancel };
         chart.poles = chart.find_poles(size);
         chart.spindle(border);
         chart

@@ -24,6 +24,8 @@ pub(super) struct EdgeLines {
     ranges: Vec<[u32; 2]>,
     /// Edges of faces in whose parameter space straight edges need not be straight.
     free_form: Vec<bool>,
+    /// Beyond this number of points edges become straight.
+    most_points: usize,
 }
 
 /// What the edges of a body are cut by.
@@ -36,15 +38,16 @@ pub(super) struct Fineness {
 }
 
 impl EdgeLines {
-    /// Tessellates the edges; `spans`: where each begins and ends on its curve.
+    /// Tessellates the edges; `spans`: where each begins and ends on its curve, `most_points`: of all together.
     pub fn of(
         model: &Model,
         spans: &[Option<[f64; 2]>],
         fineness: &Fineness,
+        most_points: usize,
         cancel: &Cancel,
     ) -> Result<Self, Cancelled> {
         let free_form = edges_of_free_form_faces(model);
-        let mut lines = Self { points: Vec::new(), middles: Vec::new(), ranges: Vec::new(), free_form };
+        let mut lines = Self { points: Vec::new(), middles: Vec::new(), ranges: Vec::new(), free_form, most_points };
         for (index, span) in spans.iter().enumerate() {
             cancel.check()?;
             let range = lines.add(model, EdgeId(index as u32), *span, fineness);
@@ -59,6 +62,12 @@ impl EdgeLines {
         (&self.points[range[0]..range[1]], &self.middles[range[0]..range[1]])
     }
 
+    /// What is to be said where there were too many points.
+    pub fn warning(&self) -> Option<String> {
+        let full = self.points.len() > self.most_points;
+        full.then(|| format!("the edges have more than {} points: some were taken as straight", self.most_points))
+    }
+
     /// Tessellates an edge again.
     pub fn replace(&mut self, model: &Model, edge: EdgeId, span: Option<[f64; 2]>, fineness: &Fineness) {
         self.ranges[edge.index()] = self.add(model, edge, span, fineness);
@@ -69,7 +78,7 @@ impl EdgeLines {
         let first = self.points.len();
         let least = if self.free_form[id.index()] { FREE_FORM_SEGMENTS } else { 1 };
         match (&model.edges[id.index()].curve, span) {
-            (Some(curve), Some([from, to])) if !matches!(**curve, Curve::Line { .. }) => {
+            (Some(curve), Some([from, to])) if !matches!(**curve, Curve::Line { .. }) && first <= self.most_points => {
                 self.follow(curve, [from, to], fineness, least);
                 let last = self.points.len() - 1;
                 self.points[first] = start;

@@ -7,6 +7,7 @@ use super::edges::{EdgeLines, Fineness};
 use super::fallback::planar_fill;
 use super::integrate::{Integrals, integrate, integrate_triangles};
 use crate::brep::{Face, FaceGeometry, Facets, Model, Surface};
+use crate::cancel::Cancel;
 use crate::geometry::Point;
 
 /// Points further than this share of the model's size from their surface do not belong to it.
@@ -24,6 +25,7 @@ const REFINEMENTS: usize = 2;
 /// What all faces of a model need.
 pub(super) struct Context<'a> {
     pub model: &'a Model,
+    pub cancel: &'a Cancel,
     pub lines: EdgeLines,
     /// Edges without length.
     pub degenerate: Vec<bool>,
@@ -57,8 +59,9 @@ pub(super) fn mesh(context: &Context, face: &Face, reference: &Point) -> Result<
         FaceGeometry::Trimmed { surface, same_sense } => (surface, *same_sense),
         FaceGeometry::Faceted(facets) => return faceted(facets, reference),
     };
-    let border = Border::of(face, &context.lines, &context.degenerate);
+    let border = Border::of(face, &context.lines, &context.degenerate).ok_or("a border of too many points")?;
     let mut chart = Chart::new(surface, same_sense, &border.points(), context.size);
+    chart.cancel = context.cancel.clone();
     match trimmed(context, surface, &mut chart, &border, reference) {
         Ok(mesh) => Ok(mesh),
         Err(why) => filled(context, face, border.loops, reference, &why),
@@ -152,7 +155,7 @@ fn filled(
     reference: &Point,
     why: &str,
 ) -> Result<FaceMesh, String> {
-    let patch = planar_fill(borders, context.size, &context.fineness).ok_or_else(|| why.to_owned())?;
+    let patch = planar_fill(borders, context).ok_or_else(|| why.to_owned())?;
     let integrals = integrate_triangles(&patch.points, &patch.triangles, reference);
     let warning = Some(format!("face #{}: {why}; its border was filled with a plane", face.entity));
     Ok(FaceMesh { points: patch.points, triangles: patch.triangles, integrals, reference: *reference, warning })

@@ -3,20 +3,22 @@
 use super::boundary::{Path, paths};
 use super::chart::Chart;
 use super::domain::{Patch, triangulate};
-use super::edges::Fineness;
+use super::face::Context;
 use crate::brep::{Placement, Surface};
 use crate::geometry::{Point, Vector, any_perpendicular, isometry::mean};
 
 /// Fills the border; `None` where it has no extent.
-pub(super) fn planar_fill(borders: Vec<[Vec<Point>; 2]>, size: f64, fineness: &Fineness) -> Option<Patch> {
+pub(super) fn planar_fill(borders: Vec<[Vec<Point>; 2]>, context: &Context) -> Option<Patch> {
+    let size = context.size;
     let normal = borders.iter().map(|b| area_vector(&b[0])).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let z = normal.try_normalize(1e-12 * size * size)?;
     let x = any_perpendicular(&z);
     let largest = borders.iter().max_by_key(|b| b[0].len())?;
     let surface = Surface::Plane(Placement { origin: mean(&largest[0]), x, y: z.cross(&x), z });
-    let chart = Chart::new(&surface, true, &[], size);
+    let mut chart = Chart::new(&surface, true, &[], size);
+    chart.cancel = context.cancel.clone();
     let mut paths: Vec<Path> = paths(&chart, borders, size, f64::INFINITY).ok()?;
-    triangulate(&chart, &mut paths, fineness, true)
+    triangulate(&chart, &mut paths, &context.fineness, true)
 }
 
 /// Half the sum of the cross products along a closed polyline: its area vector.

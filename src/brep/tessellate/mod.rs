@@ -65,6 +65,8 @@ impl Default for Options {
 
 /// Models with fewer faces than this are not worth more than one thread.
 const PARALLEL_FACES: usize = 400;
+/// Faces that are tessellated before their triangles are counted.
+const BATCH: usize = 512;
 
 /// The mesh of all placed faces, the faces left out (with the reason), and warnings.
 ///
@@ -75,7 +77,7 @@ pub fn tessellate(
     options: &Options,
     cancel: &Cancel,
 ) -> Result<(Mesh, Vec<Skipped>, Vec<String>), Cancelled> {
-    let spans: Vec<_> = (0..model.edges.len()).map(|e| model.edge_span(EdgeId(e as u32))).collect();
+    let spans = spans(model, cancel)?;
     let boxes = place::boxes(model, &spans);
     let size = place::model_box(model, &boxes).diagonal();
     if size.is_nan() || size <= 0.0 || size.is_infinite() {
@@ -84,13 +86,22 @@ pub fn tessellate(
     }
     let part_size = size / place::largest_scale(model);
     let fineness = Fineness::new(options, part_size);
-    let lines = EdgeLines::of(model, &spans, &fineness, cancel)?;
+    let lines = EdgeLines::of(model, &spans, &fineness, options.max_triangles, cancel)?;
     let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
     let reference = references(model, &boxes);
-    let mut context = Context { model, lines, degenerate, fineness, size: part_size, reference };
-    let mut faces = face_meshes(&context, cancel)?;
+    let mut context = Context { model, cancel, lines, degenerate, fineness, size: part_size, reference };
+    let mut faces = face_meshes(&context, options.max_triangles)?;
     refine::refine(&mut context, &spans, &mut faces, cancel)?;
-    Ok(place::place(model, faces, options.max_triangles, cancel)?.finish())
+    let warning = context.lines.warning();
+    let (mesh, skipped, mut warnings) = place::place(model, faces, options.max_triangles, cancel)?.finish();
+    warnings.extend(warning);
+    Ok((mesh, skipped, warnings))
+}
+
+/// Where each edge begins and ends on its curve.
+fn spans(model: &Model, cancel: &Cancel) -> Result<Vec<Option<[f64; 2]>>, Cancelled> {
+    let span = |edge: usize| cancel.check().map(|()| model.edge_span(EdgeId(edge as u32)));
+    (0..model.edges.len()).map(span).collect()
 }
 
 fn all_skipped(model: &Model, why: &str) -> Vec<Skipped> {
@@ -112,15 +123,26 @@ fn references(model: &Model, boxes: &[Aabb]) -> Vec<Point> {
     points
 }
 
-fn face_meshes(context: &Context, cancel: &Cancel) -> Result<Vec<Result<FaceMesh, String>>, Cancelled> {
-    let one = |(index, face): (usize, &Face)| {
-        cancel.check()?;
-        Ok(face::mesh(context, face, &context.reference[index]))
+/// The meshes of the faces in their order, of the first ones only where these have more than `most` triangles.
+fn face_meshes(context: &Context, most: usize) -> Result<Vec<Result<FaceMesh, String>>, Cancelled> {
+    let one = |(face, reference): (&Face, &Point)| {
+        let mesh = face::mesh(context, face, reference);
+        // Asked afterwards, too: what a cancelled face says means nothing.
+        context.cancel.check().map(|()| mesh)
     };
     let faces = &context.model.faces;
-    if faces.len() < PARALLEL_FACES {
-        faces.iter().enumerate().map(one).collect()
-    } else {
-        faces.par_iter().enumerate().map(one).collect()
+    let (mut meshes, mut triangles) = (Vec::with_capacity(faces.len()), 0);
+    for (batch, references) in faces.chunks(BATCH).zip(context.reference.chunks(BATCH)) {
+        let made: Vec<_> = if faces.len() < PARALLEL_FACES {
+            batch.iter().zip(references).map(one).collect::<Result<_, _>>()?
+        } else {
+            batch.par_iter().zip(references).map(one).collect::<Result<_, _>>()?
+        };
+        triangles += made.iter().flatten().map(|mesh| mesh.triangles.len()).sum::<usize>();
+        meshes.extend(made);
+        if triangles > most {
+            break;
+        }
     }
+    Ok(meshes)
 }

@@ -14,11 +14,25 @@ pub(super) struct Placed {
     mesh: Mesh,
     skipped: Vec<Skipped>,
     warnings: Vec<String>,
+    /// Faces for which there was no room.
+    left_out: usize,
 }
 
 impl Placed {
-    pub fn finish(self) -> (Mesh, Vec<Skipped>, Vec<String>) {
+    pub fn finish(mut self) -> (Mesh, Vec<Skipped>, Vec<String>) {
+        if self.left_out > 1 {
+            self.warnings.push(format!("{} faces in place were left out: too many triangles", self.left_out));
+        }
         (self.mesh, self.skipped, self.warnings)
+    }
+
+    /// A face for which there is no room; only the first one is named, as occurrences multiply them.
+    fn leave_out(&mut self, entity: u64, max_triangles: usize) {
+        if self.left_out == 0 {
+            let why = format!("more than {max_triangles} triangles in the model");
+            self.skipped.push(Skipped { entity, why });
+        }
+        self.left_out += 1;
     }
 
     fn add(&mut self, occurrence: u32, placement: &Transform, id: crate::brep::FaceId, face: &FaceMesh) {
@@ -54,13 +68,13 @@ pub(super) fn place(
     for (index, occurrence) in model.occurrences.iter().enumerate() {
         cancel.check()?;
         for id in model.faces_of(occurrence.body) {
-            let Ok(face) = &faces[id.index()] else { continue };
-            if placed.mesh.triangles.len() + face.triangles.len() > max_triangles {
-                let why = format!("more than {max_triangles} triangles in the model");
-                placed.skipped.push(Skipped { entity: model.faces[id.index()].entity, why });
-                continue;
+            match faces.get(id.index()) {
+                Some(Ok(face)) if placed.mesh.triangles.len() + face.triangles.len() <= max_triangles => {
+                    placed.add(index as u32, &occurrence.placement, id, face);
+                }
+                Some(Err(_)) => {}
+                _ => placed.leave_out(model.faces[id.index()].entity, max_triangles),
             }
-            placed.add(index as u32, &occurrence.placement, id, face);
         }
     }
     for (face, result) in model.faces.iter().zip(faces) {

@@ -33,9 +33,10 @@ pub(super) fn refine(
             context.lines.replace(context.model, edge, spans[edge.index()], &finer);
         }
         let touched = |face: &Face| edges_of(face).any(|e| edges.contains(&e));
-        for (index, face) in context.model.faces.iter().enumerate().filter(|(_, f)| touched(f)) {
+        let all = context.model.faces.iter().zip(&context.reference).zip(&mut *faces);
+        for ((face, reference), mesh) in all.filter(|((face, _), _)| touched(face)) {
+            *mesh = face::mesh(context, face, reference);
             cancel.check()?;
-            faces[index] = face::mesh(context, face, &context.reference[index]);
         }
     }
     Ok(())

@@ -2,11 +2,20 @@
 //! between two monotone chains.
 
 use earcut::Earcut;
+use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 use std::cell::Cell;
 use std::collections::VecDeque;
 
 use super::chart::Uv;
+use crate::cancel::Cancel;
+
+/// Crossings that are always split, and how many are split for each point: real borders cross themselves here and
+/// there, scribbles as often as there are pairs of segments.
+const MOST_CROSSINGS: usize = 1000;
+const CROSSINGS_A_POINT: usize = 2;
+/// Polygons with more points than this are left to the Delaunay triangulation: ears of tangled ones take cubic time.
+const MOST_EARS: usize = 4000;
 
 /// How much the triangles' area may differ from the polygon's, as a share.
 const AREA_SLACK: f64 = 1e-6;
@@ -14,6 +23,9 @@ const AREA_SLACK: f64 = 1e-6;
 /// Triangles of a polygon with holes, all counter-clockwise; `rings`: where each ring starts, the outer one first,
 /// `area`: what they must add up to. `None` where the rings cut each other and the areas differ.
 pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32; 3]>> {
+    if points.len() > MOST_EARS {
+        return None;
+    }
     let holes: Vec<u32> = rings.iter().skip(1).map(|&r| r as u32).collect();
     let mut indices: Vec<u32> = Vec::with_capacity(3 * points.len());
     Earcut::new().earcut(points.iter().copied(), &holes, &mut indices);
@@ -92,19 +104,22 @@ pub(super) struct Cut {
     pub added: Vec<Uv>,
 }
 
-/// Constrained Delaunay triangulation; segments that cross are split. `None` for points that cannot be used.
-pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]]) -> Option<Cut> {
-    let tidy = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
-    let site = |(i, p): (usize, &Uv)| Site { position: Point2::new(tidy(p[0]), tidy(p[1])), index: i as u32 };
+/// Constrained Delaunay triangulation; segments that cross are split. `None` for points that cannot be used, where
+/// segments cross far too often, and when cancelled.
+pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]], cancel: &Cancel) -> Option<Cut> {
     if points.iter().any(|p| !(p[0].abs() < 1e30 && p[1].abs() < 1e30)) {
         return None;
     }
-    let sites = points.iter().enumerate().map(site).collect();
-    let edges = segments.iter().filter(|s| s[0] != s[1]).map(|s| s.map(|i| i as usize)).collect();
+    let (sites, places) = sites(points);
+    let edges = segments.iter().map(|s| s.map(|i| places[i as usize])).filter(|s| s[0] != s[1]).collect();
     let mut conflicts = Vec::new();
     let mut mesh = Delaunay::try_bulk_load_cdt(sites, edges, |e| conflicts.push(e)).ok()?;
     let next = Cell::new(points.len() as u32);
+    let most = MOST_CROSSINGS.max(CROSSINGS_A_POINT * points.len());
     for [from, to] in conflicts {
+        if next.get() as usize - points.len() > most || cancel.is_cancelled() {
+            return None;
+        }
         let handles = [from, to].map(spade::handles::FixedVertexHandle::from_index);
         mesh.add_constraint_and_split(handles[0], handles[1], |position| {
             let index = next.get();
@@ -119,6 +134,23 @@ pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]]) -> Option<Cut> {
         }
     }
     Some(regions(&mesh, added))
+}
+
+/// Each place once, and which of them each point is: the triangulation takes quadratic time for coincident points.
+fn sites(points: &[Uv]) -> (Vec<Site>, Vec<usize>) {
+    // Also makes -0 the same as 0.
+    let tidy = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
+    let mut known: FxHashMap<[u64; 2], usize> = FxHashMap::default();
+    let mut sites = Vec::with_capacity(points.len());
+    let mut place = |(i, p): (usize, &Uv)| {
+        let [x, y] = p.map(tidy);
+        *known.entry([x.to_bits(), y.to_bits()]).or_insert_with(|| {
+            sites.push(Site { position: Point2::new(x, y), index: i as u32 });
+            sites.len() - 1
+        })
+    };
+    let places = points.iter().enumerate().map(&mut place).collect();
+    (sites, places)
 }
 
 /// Floods the triangles between constraint edges.
@@ -170,7 +202,7 @@ mod tests {
         let points: Vec<Uv> = square(2.0).into_iter().chain(square(1.0)).collect();
         let ring = |s: u32| (0..4).map(move |i| [s + i, s + (i + 1) % 4]);
         let segments: Vec<_> = ring(0).chain(ring(4)).collect();
-        let cut = delaunay(&points, &segments).unwrap();
+        let cut = delaunay(&points, &segments, &Cancel::new()).unwrap();
         let area = |region| {
             let inside = cut.triangles.iter().zip(&cut.regions).filter(move |t| *t.1 == region);
             inside.map(|t| 0.5 * doubled_area(&points, t.0)).sum::<f64>()
@@ -184,7 +216,7 @@ mod tests {
     #[test]
     fn crossing_segments_are_split() {
         let points = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-        let cut = delaunay(&points, &[[0, 1], [2, 3]]).unwrap();
+        let cut = delaunay(&points, &[[0, 1], [2, 3]], &Cancel::new()).unwrap();
         assert_eq!(cut.added, [[0.5, 0.5]]);
         assert_eq!(cut.triangles.len(), 4);
     }
