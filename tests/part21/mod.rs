@@ -1,6 +1,8 @@
 //! Part 21 text, changed as broken writers and hostile hands change it; shared by the property tests and the fuzzer.
 #![allow(dead_code)] // each program uses its part
 
+pub mod reading;
+
 use std::ops::Range;
 
 use rand::RngExt;
@@ -9,8 +11,30 @@ use rand_pcg::Pcg64;
 
 /// Numbers that readers trip over.
 const NUMBERS: [&str; 24] = [
-    "0.", "-0.", "1.", "-1.", "0.5", "1.E-9", "1.E-30", "1.E-300", "1.E9", "1.E30", "1.E300", "-1.E300", "1.E999", "NAN",
-    "INF", "3.141592653589793", "90.", "360.", "2", "-2", "26", "4294967296", "9007199254740993.", "$",
+    "0.",
+    "-0.",
+    "1.",
+    "-1.",
+    "0.5",
+    "1.E-9",
+    "1.E-30",
+    "1.E-300",
+    "1.E9",
+    "1.E30",
+    "1.E300",
+    "-1.E300",
+    "1.E999",
+    "NAN",
+    "INF",
+    "3.141592653589793",
+    "90.",
+    "360.",
+    "2",
+    "-2",
+    "26",
+    "4294967296",
+    "9007199254740993.",
+    "$",
 ];
 
 /// Instances made of others: `@` stands for the one that is to be wrapped.
@@ -111,7 +135,8 @@ impl Text {
     }
 
     fn change_number(&mut self, at: usize, rng: &mut Pcg64) {
-        let value = self.token(at, Token::Number, rng).and_then(|r| text_of(&self.instances[at], r).parse::<f64>().ok());
+        let value =
+            self.token(at, Token::Number, rng).and_then(|r| text_of(&self.instances[at], r).parse::<f64>().ok());
         self.replace_token(at, Token::Number, rng, |rng| match (value, rng.random_range(0..4)) {
             (Some(value), 0) => format!("{:?}", -value),
             (Some(value), 1) => format!("{:?}", value * (1.0 + 10.0_f64.powi(-rng.random_range(0..12)))),
@@ -122,7 +147,8 @@ impl Text {
     /// Mostly to an instance of the type that was meant.
     fn change_reference(&mut self, at: usize, rng: &mut Pcg64) {
         let meant = self.token(at, Token::Reference, rng).map(|r| text_of(&self.instances[at], r));
-        let kind = meant.and_then(|id| self.instances.iter().find(|i| number_of(i) == id)).map(|i| keyword_of(i).to_owned());
+        let kind =
+            meant.and_then(|id| self.instances.iter().find(|i| number_of(i) == id)).map(|i| keyword_of(i).to_owned());
         let same: Vec<String> =
             self.instances.iter().filter(|i| Some(keyword_of(i)) == kind.as_deref()).map(|i| number_of(i)).collect();
         let (own, any) = (number_of(&self.instances[at]), number_of(self.instances.choose(rng).expect("there is one")));

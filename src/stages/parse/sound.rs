@@ -10,6 +10,9 @@ pub(super) type Why = &'static str;
 const NOT_FINITE: Why = "a number that is not finite";
 const NOT_POSITIVE: Why = "a length that is not positive";
 
+/// The largest coordinate of a point, mm.
+const FARTHEST: f64 = 1e12;
+
 /// The most evaluations of plain curves and surfaces that one of a nested one may take.
 const MOST_EVALUATIONS: usize = 1000;
 
@@ -127,7 +130,13 @@ fn finite(values: &[f64]) -> Result<(), Why> {
 }
 
 fn points(points: &[Point]) -> Result<(), Why> {
-    points.iter().try_for_each(|p| finite(p.coords.as_slice()))
+    points.iter().try_for_each(in_reach)
+}
+
+/// Checks that a point is finite and not so far out that it is no part of a model but would set its size.
+pub(super) fn in_reach(point: &Point) -> Result<(), Why> {
+    finite(point.coords.as_slice())?;
+    if point.iter().all(|c| c.abs() <= FARTHEST) { Ok(()) } else { Err("a point further out than 1e12 mm") }
 }
 
 fn direction_of(direction: &Vector) -> Result<(), Why> {

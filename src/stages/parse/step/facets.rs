@@ -9,7 +9,7 @@ use super::keyword::Kind;
 use super::records::Record;
 use super::topology::{Builder, LooseFace};
 use crate::brep::{FaceGeometry, Facets};
-use crate::geometry::Point;
+use crate::geometry::{Point, Vector};
 use crate::stages::parse::fault::{Fault, Read};
 
 impl Builder<'_> {
@@ -70,7 +70,7 @@ impl Builder<'_> {
         record.fields(&[]).skip_many(2).list(|row| {
             let values = row.reals()?;
             let [x, y, z] = values[..] else { return Err(Fault::new(id, "three coordinates were expected")) };
-            points.push(Point::new(x, y, z) * self.geometry.units.length);
+            points.push(self.geometry.in_reach(id, Vector::new(x, y, z))?);
             Ok(())
         })?;
         let points: Arc<[Point]> = points.into();

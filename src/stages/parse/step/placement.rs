@@ -8,6 +8,10 @@ use super::units::Units;
 use crate::brep::Placement;
 use crate::geometry::{Point, Transform, Vector, any_perpendicular};
 use crate::stages::parse::fault::{Fault, Read};
+use crate::stages::parse::sound;
+
+/// The scales of transformation operators that are taken.
+const SCALES: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 /// Decodes geometry in the units of one representation.
 #[derive(Clone)]
@@ -34,7 +38,15 @@ impl<'a> Geometry<'a> {
 
     /// CARTESIAN_POINT.
     pub fn point(&self, id: u64) -> Read<Point> {
-        Ok(Point::from(self.triple(id, Kind::CartesianPoint, "a point was expected")? * self.units.length))
+        let coordinates = self.triple(id, Kind::CartesianPoint, "a point was expected")?;
+        self.in_reach(id, coordinates)
+    }
+
+    /// A point with coordinates in the units of the representation.
+    pub(super) fn in_reach(&self, id: u64, coordinates: Vector) -> Read<Point> {
+        let point = Point::from(coordinates * self.units.length);
+        sound::in_reach(&point).map_err(|why| Fault::new(id, why))?;
+        Ok(point)
     }
 
     /// DIRECTION, of length 1; `None` for a zero direction.
@@ -127,8 +139,8 @@ impl<'a> Geometry<'a> {
         let origin = self.point(cursor.reference()?)?;
         let scale = cursor.optional_real()?.unwrap_or(1.0);
         let third = self.optional_direction(cursor.optional_reference()?)?;
-        if !(scale > 0.0 && scale.is_finite()) {
-            return Err(record.fault("a scale that is not positive"));
+        if !SCALES.contains(&scale) {
+            return Err(record.fault("a scale that is not positive or beyond reason"));
         }
         let frame = orthonormal(origin, third, first);
         let y = if second.is_some_and(|s| s.dot(&frame.y) < 0.0) { -frame.y } else { frame.y };

@@ -83,6 +83,10 @@ impl<'a> Builder<'a> {
         if record.is(Kind::OrientedFace) {
             return self.oriented_face(&record, depth);
         }
+        let on_surface = record.is(Kind::AdvancedFace) || record.is(Kind::FaceSurface);
+        if !on_surface && !record.is(Kind::Subface) && !record.is(Kind::Face) {
+            return Err(record.fault("a face was expected"));
+        }
         self.geometry.spend(id, 1)?;
         let mut cursor = record.fields(FACE);
         let bounds = cursor.skip_many(1).references()?;
@@ -90,13 +94,11 @@ impl<'a> Builder<'a> {
             let parent = self.parent_face(cursor.reference()?, depth)?;
             return Ok(LooseFace { entity: id, loops: self.bounds(id, &bounds)?, geometry: parent.geometry });
         }
-        let geometry = if record.is(Kind::AdvancedFace) || record.is(Kind::FaceSurface) {
+        let geometry = if on_surface {
             let surface = self.surface(cursor.reference()?)?;
             FaceGeometry::Trimmed { surface, same_sense: cursor.flag().unwrap_or(true) }
-        } else if record.is(Kind::Face) {
-            self.plane_of(&record, &bounds)?
         } else {
-            return Err(record.fault("a face was expected"));
+            self.plane_of(&record, &bounds)?
         };
         Ok(LooseFace { entity: id, loops: self.bounds(id, &bounds)?, geometry })
     }
