@@ -1,14 +1,16 @@
 //! Stage 1: the bytes of a CAD file -> B-rep, mesh and measures.
 //!
-//! In: the bytes of a STEP file ([`step`]) or an OCCT `.brep` file ([`occt`]); what a file is, its first bytes say.
-//! Out: [`Parsed`].
+//! In: the bytes of a STEP ([`step`]), IGES ([`iges`]) or OCCT `.brep` file ([`occt`]); what a file is, its first bytes
+//! say. Out: [`Parsed`].
 //!
 //! Method: a reader for each format makes the same [`Model`]; then the faces are tessellated and measured.
 //!
 //! Cost, and what it does not promise: as the readers say, and [`tessellate`].
 
 mod chains;
+mod cut;
 mod fault;
+mod iges;
 mod moved;
 mod notes;
 mod occt;
@@ -94,6 +96,9 @@ pub fn parse(bytes: &[u8], options: &Options, pose: Option<&Isometry>, cancel: &
 pub fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<Reading, ModelError> {
     if occt::is_brep(bytes) {
         return occt::read(bytes, options, cancel);
+    }
+    if iges::is_iges(bytes) {
+        return iges::read(bytes, options, cancel);
     }
     step::read(bytes, options, cancel)
 }

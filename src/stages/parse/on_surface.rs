@@ -13,20 +13,47 @@ const NEAR: f64 = 1e-6;
 /// The most pieces of one curve.
 const MAX_PIECES: usize = 4096;
 
-/// A point of the curve in space with its derivative by the parameter.
+/// A point of a curve in space with its derivative by the parameter.
 #[derive(Clone, Copy)]
-struct Knot {
-    t: f64,
-    point: Vector,
-    derivative: Vector,
+pub(super) struct Knot {
+    pub t: f64,
+    pub point: Vector,
+    pub derivative: Vector,
+}
+
+/// From the parameters in which a file's curves are given to those of a surface of ours.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chart {
+    pub scale: [f64; 2],
+    pub offset: [f64; 2],
+    /// The file's first parameter is our second, before scale and offset.
+    pub swapped: bool,
+}
+
+impl Default for Chart {
+    fn default() -> Self {
+        Self { scale: [1.0, 1.0], offset: [0.0, 0.0], swapped: false }
+    }
+}
+
+impl Chart {
+    /// Whether S_u x S_v by the file's parameters is against ours.
+    pub fn turns(&self) -> bool {
+        (self.scale[0] * self.scale[1] < 0.0) != self.swapped
+    }
+
+    fn turned(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        let [u, v] = if self.swapped { [v, u] } else { [u, v] };
+        [u * self.scale[0], v * self.scale[1]]
+    }
 }
 
 /// The image of the piece of `flat` (a curve in the plane z = 0: u and v) between two parameters, as a cubic spline
-/// through points of the surface with its true tangents there. `scale`: the surface's parameters for one unit of u and v.
+/// through points of the surface with its true tangents there.
 ///
 /// # Errors
 /// Where the range is empty or the image is not finite.
-pub(super) fn traced(surface: &Surface, scale: [f64; 2], flat: &Curve, range: [f64; 2]) -> Result<NurbsCurve, Why> {
+pub(super) fn traced(surface: &Surface, chart: &Chart, flat: &Curve, range: [f64; 2]) -> Result<NurbsCurve, Why> {
     let [a, b] = range;
     if !(a.is_finite() && b.is_finite() && a < b) {
         return Err("a range that is empty");
@@ -34,8 +61,9 @@ pub(super) fn traced(surface: &Surface, scale: [f64; 2], flat: &Curve, range: [f
     let period = flat.period();
     let at = |t: f64| {
         let [uv, d, _] = flat.derivatives(flat.wrap(t, period));
-        let jet = surface.jet(uv.x * scale[0], uv.y * scale[1]);
-        let derivative = jet.du * (d.x * scale[0]) + jet.dv * (d.y * scale[1]);
+        let ([u, v], [du, dv]) = (chart.turned([uv.x, uv.y]), chart.turned([d.x, d.y]));
+        let jet = surface.jet(u + chart.offset[0], v + chart.offset[1]);
+        let derivative = jet.du * du + jet.dv * dv;
         Knot { t, point: jet.point.coords, derivative }
     };
     let inner = flat.breaks().into_iter().filter(|t| *t > a && *t < b);
@@ -75,8 +103,8 @@ fn halve(at: &impl Fn(f64) -> Knot, start: Knot, end: Knot, depth: u32, out: &mu
     }
 }
 
-/// The cubic spline with double inner knots that has these points and derivatives.
-fn hermite(knots: &[Knot]) -> NurbsCurve {
+/// The cubic spline with double inner knots that has these points and derivatives; two of them at least.
+pub(super) fn hermite(knots: &[Knot]) -> NurbsCurve {
     let mut points = vec![knots[0].point];
     for pair in knots.windows(2) {
         let third = (pair[1].t - pair[0].t) / 3.0;
@@ -106,7 +134,7 @@ mod tests {
         let placement = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::y(), z: Vector::z() };
         let cylinder = Surface::Cylinder { placement, radius: 2.0 };
         let flat = Curve::Line { origin: Point::origin(), direction: Vector::new(1.0, 3.0, 0.0) };
-        let spline = traced(&cylinder, [1.0, 0.5], &flat, [0.0, 4.0]).unwrap();
+        let spline = traced(&cylinder, &Chart { scale: [1.0, 0.5], ..Chart::default() }, &flat, [0.0, 4.0]).unwrap();
         let helix = Curve::Nurbs(spline);
         for i in 0..=40 {
             let t = 0.1 * f64::from(i);
@@ -120,7 +148,7 @@ mod tests {
     fn an_empty_range_is_refused() {
         let placement = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::y(), z: Vector::z() };
         let flat = Curve::Line { origin: Point::origin(), direction: Vector::x() };
-        assert!(traced(&Surface::Plane(placement), [1.0; 2], &flat, [1.0, 1.0]).is_err());
-        assert!(traced(&Surface::Plane(placement), [1.0; 2], &flat, [0.0, f64::NAN]).is_err());
+        assert!(traced(&Surface::Plane(placement), &Chart::default(), &flat, [1.0, 1.0]).is_err());
+        assert!(traced(&Surface::Plane(placement), &Chart::default(), &flat, [0.0, f64::NAN]).is_err());
     }
 }

@@ -8,13 +8,11 @@ use super::locations::Place;
 use super::shapes::{Data, EdgeData, Kind, Orientation, ParameterCurve, SpaceCurve};
 use crate::brep::{Curve, Edge, EdgeId, Vertex, VertexId};
 use crate::geometry::{Point, Transform};
+use crate::stages::parse::cut;
 use crate::stages::parse::fault::{Fault, Read};
 use crate::stages::parse::moved::moved_curve;
-use crate::stages::parse::on_surface;
+use crate::stages::parse::on_surface::{self, Chart};
 use crate::stages::parse::sound::Why;
-
-/// Parameters this near, as a share of their range, are the same.
-const SAME: f64 = 1e-9;
 
 impl Builder<'_> {
     /// An edge in its place; `None` for those shrunk to a point. The direction of the use does not matter.
@@ -121,7 +119,8 @@ impl Builder<'_> {
         let whole = self.placed_curve(seen, of.curve, place)?;
         let scale = listed(&self.file.curves, of.curve).map_or(1.0, parameter_scale);
         let range = of.range.map(|t| t * scale);
-        if tells_its_range(&whole, range, ends) {
+        let closed = ends.iter().all(Option::is_some).then(|| ends[0] == ends[1]);
+        if closed.is_some_and(|closed| cut::needs_none(&whole, range, closed)) {
             return Ok(whole);
         }
         let [a, b] = range;
@@ -155,7 +154,7 @@ impl Builder<'_> {
         let own = self.locations.numbered(of.location).map_err(|why| fault(seen, why))?;
         let place = self.locations.compose(seen.place, own).map_err(|why| fault(seen, why))?;
         let range = of.range.map(|t| t * parameter_scale(flat));
-        let traced = on_surface::traced(&sheet.surface, sheet.scale, flat, range);
+        let traced = on_surface::traced(&sheet.surface, &Chart { scale: sheet.scale, ..Chart::default() }, flat, range);
         let traced = traced.map_err(|why| of_curve(seen, "curve in parameter space", of.curve, why))?;
         self.spend(seen.entity(), traced.points.len())?;
         let transform = self.locations.transform(place).map_err(|why| fault(seen, why))?;
@@ -179,16 +178,5 @@ fn listed(curves: &[Made], number: u32) -> Result<&Curve, Why> {
         Some(Ok(curve)) => Ok(curve),
         Some(Err(why)) => Err(why),
         None => Err("it is not there"),
-    }
-}
-
-/// Whether the vertices of an edge already say which piece of its curve it is.
-fn tells_its_range(curve: &Curve, [a, b]: [f64; 2], ends: [Option<VertexId>; 2]) -> bool {
-    let [Some(start), Some(end)] = ends else { return false };
-    let [from, to] = curve.domain();
-    match curve {
-        Curve::Line { .. } | Curve::Parabola { .. } | Curve::Hyperbola { .. } => start != end,
-        Curve::Circle { .. } | Curve::Ellipse { .. } => (start == end) == (b - a >= (1.0 - SAME) * (to - from)),
-        _ => (a - from).abs().max((b - to).abs()) <= SAME * (to - from),
     }
 }
