@@ -20,7 +20,7 @@ pub enum Kind {
     SevenZip,
 }
 
-const MODELS: [&str; 5] = [".step", ".stp", ".p21", ".brep", ".brp"];
+const MODELS: [&str; 7] = [".step", ".stp", ".p21", ".igs", ".iges", ".brep", ".brp"];
 /// Compressed single files (ISO 10303-21 edition 3 names `.stpz`; they hold gzip or zip data).
 const PACKED_MODELS: [&str; 3] = [".stepz", ".stpz", ".p21z"];
 const PACKINGS: [(&str, Packing); 3] = [(".gz", Packing::Gzip), (".xz", Packing::Xz), (".zst", Packing::Zstd)];
@@ -74,6 +74,8 @@ mod tests {
             ("a/Part.STEP", Some(Kind::Model(Packing::Plain))),
             ("x.stp", Some(Kind::Model(Packing::Plain))),
             ("x.p21", Some(Kind::Model(Packing::Plain))),
+            ("x.IGS", Some(Kind::Model(Packing::Plain))),
+            ("x.iges.xz", Some(Kind::Model(Packing::Xz))),
             ("x.brep", Some(Kind::Model(Packing::Plain))),
             ("x.brp.gz", Some(Kind::Model(Packing::Gzip))),
             ("x.stpZ", Some(Kind::Model(Packing::Gzip))),

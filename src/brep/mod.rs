@@ -189,7 +189,7 @@ pub struct Skipped {
 /// A CAD model: bodies, and where they lie.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// First schema name of the file's header, empty if there is none.
+    /// First schema name of a STEP file's header, empty if there is none; for other formats their name and version.
     pub schema: String,
     /// Millimetres in one length unit of the (first) representation.
     pub unit_mm: f64,

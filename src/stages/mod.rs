@@ -1,6 +1,6 @@
 //! The method, in eight stages. Each is a pure function from the output of earlier stages to its own.
 //!
-//! 1. [`parse`] reads the bytes of a CAD file (STEP, OCCT `.brep`) into a B-rep, its mesh and its measures.
+//! 1. [`parse`] reads the bytes of a CAD file (STEP, IGES, OCCT `.brep`) into a B-rep, its mesh and its measures.
 //! 2. [`corner_filter`] merges faces split by the exporter and finds the corners of each outline.
 //! 3. [`pair_match`] finds the pairs of faces whose corners, in order, are equally far apart.
 //! 4. [`isometry`] fits to each pair the isometry that maps the corners of one face to the other's.

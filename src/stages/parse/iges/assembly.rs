@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::curves::is_curve;
 use super::file::File;
 use super::trimmed::is_face;
 use crate::cancel::{Cancel, Cancelled};
@@ -33,13 +34,17 @@ pub(super) struct Assembly {
     pub placed: Vec<Placed>,
     /// The faces of each [`Source::Loose`].
     pub loose: FxHashMap<u64, Vec<u64>>,
+    /// Curves and points that bound no face.
+    pub free: Vec<(u64, Transform)>,
     pub faults: Vec<Fault>,
 }
 
 /// Places the visible entities that are not parts of others; where none of them makes a face, all that could.
 pub(super) fn assemble(file: &File, room: usize, cancel: &Cancel) -> Result<Assembly, Cancelled> {
-    let assembly = Assembly { placed: Vec::new(), loose: FxHashMap::default(), faults: Vec::new() };
-    let mut walk = Walk { file, room, cancel, assembly };
+    let assembly = Assembly { placed: Vec::new(), loose: FxHashMap::default(), free: Vec::new(), faults: Vec::new() };
+    // A file that marks no entity as a part of others does not tell free curves from edges.
+    let has_free_curves = file.entries.iter().any(|entry| entry.dependent);
+    let mut walk = Walk { file, room, cancel, has_free_curves, assembly };
     let shown = |purpose: u32| !matches!(purpose, 1 | 2 | 5);
     let all = file.numbered().filter(|(_, entry)| !entry.blanked && shown(entry.purpose));
     let roots: Vec<u64> = all.filter(|(_, entry)| !entry.dependent).map(|(entity, _)| entity).collect();
@@ -66,6 +71,7 @@ struct Walk<'a> {
     file: &'a File<'a>,
     room: usize,
     cancel: &'a Cancel,
+    has_free_curves: bool,
     assembly: Assembly,
 }
 
@@ -95,10 +101,14 @@ impl Walk<'_> {
     }
 
     fn item(&mut self, entity: u64, placement: &Transform, path: &mut Vec<u64>) -> Result<Read<()>, Cancelled> {
-        let kind = match self.file.entry(entity) {
-            Ok(entry) => entry.kind,
+        let (kind, purpose) = match self.file.entry(entity) {
+            Ok(entry) => (entry.kind, entry.purpose),
             Err(fault) => return Ok(Err(fault)),
         };
+        if self.has_free_curves && purpose == 0 && (kind == 116 || is_curve(kind)) && self.room > 0 {
+            self.room -= 1;
+            self.assembly.free.push((entity, *placement));
+        }
         if !matches!(kind, 184 | 186 | 402 | 408 | 430 | 514) {
             return Ok(Ok(()));
         }

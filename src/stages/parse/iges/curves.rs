@@ -61,6 +61,11 @@ pub(super) enum Space {
     Parameter,
 }
 
+/// Whether a type of entity is a curve.
+pub(super) fn is_curve(kind: u32) -> bool {
+    matches!(kind, 100 | 102 | 104 | 106 | 110 | 112 | 126 | 130)
+}
+
 impl File<'_> {
     /// The simple curves that a curve is made of, one after the other.
     pub fn pieces(&self, entity: u64, space: Space) -> Read<Vec<Piece>> {

@@ -30,15 +30,18 @@ mod topology;
 mod trimmed;
 mod values;
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap;
 
 use self::assembly::{Assembly, Placed, Source, assemble};
+use self::curves::Space;
 use self::file::File;
 use self::lines::Form;
 use self::stitch::Stitcher;
 use self::topology::Builder;
 use super::{Options, Reading};
-use crate::brep::{BodyId, Occurrence, Shell};
+use crate::brep::{BodyId, Curve, FreeCurve, Occurrence, Shell};
 use crate::cancel::{Cancel, Cancelled};
 use crate::stages::{ModelError, Stage};
 
@@ -67,6 +70,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
     let assembly = assemble(&file, options.most_occurrences, cancel).map_err(stopped)?;
     let mut builder = Builder::new(&file);
     build(&mut builder, &assembly, options, cancel)?;
+    free_curves(&mut builder, &assembly, cancel).map_err(stopped)?;
     let Builder { model, mut notes, .. } = builder;
     assembly.faults.into_iter().for_each(|fault| notes.skip(fault.entity, fault));
     let (skipped, warnings) = notes.finish();
@@ -103,6 +107,29 @@ fn build(builder: &mut Builder, assembly: &Assembly, options: &Options, cancel: 
         if let Some(body) = body {
             let path = path.iter().map(u64::to_string).collect::<Vec<_>>().join(".");
             builder.model.occurrences.push(Occurrence { path, body, placement: *placement });
+        }
+    }
+    Ok(())
+}
+
+/// Adds the curves and points that bound no face.
+fn free_curves(builder: &mut Builder, assembly: &Assembly, cancel: &Cancel) -> Result<(), Cancelled> {
+    for &(entity, placement) in &assembly.free {
+        cancel.check()?;
+        let is_point = builder.file.entry(entity).is_ok_and(|entry| entry.kind == 116);
+        let read = if is_point {
+            builder.file.point(entity).map(|point| vec![Curve::Polyline(vec![point])])
+        } else {
+            let pieces = builder.file.pieces(entity, Space::Model);
+            pieces.map(|pieces| pieces.into_iter().map(|piece| piece.bounded()).collect())
+        };
+        match read {
+            Ok(curves) => builder.model.free_curves.extend(curves.into_iter().map(|curve| FreeCurve {
+                entity,
+                curve: Arc::new(curve),
+                placement,
+            })),
+            Err(fault) => builder.notes.skip(entity, fault),
         }
     }
     Ok(())

@@ -23,6 +23,8 @@ pub(super) struct Placed {
 /// Shapes to build and what was left out.
 pub(super) struct Assembly {
     pub placed: Vec<Placed>,
+    /// Wires, edges and vertices that are parts of no face.
+    pub free: Vec<Placed>,
     pub faults: Vec<Fault>,
 }
 
@@ -30,7 +32,8 @@ pub(super) struct Assembly {
 pub(super) fn assemble(file: &File, room: usize, cancel: &Cancel) -> Result<Assembly, Cancelled> {
     let last = file.shapes.all.len().checked_sub(1);
     let whole = last.map(|p| Use { shape: p as u32, orientation: super::shapes::Orientation::Forward, location: 0 });
-    let mut walk = Walk { file, room, cancel, assembly: Assembly { placed: Vec::new(), faults: Vec::new() } };
+    let mut walk =
+        Walk { file, room, cancel, assembly: Assembly { placed: Vec::new(), free: Vec::new(), faults: Vec::new() } };
     if let Some(root) = file.shapes.root.or(whole) {
         walk.visit(&root, &Transform::identity(), &mut Vec::new())?;
     }
@@ -48,9 +51,6 @@ impl Walk<'_> {
     /// The orientation does not matter here: bodies are given with their outside outside.
     fn visit(&mut self, used: &Use, outer: &Transform, path: &mut Vec<u32>) -> Result<(), Cancelled> {
         let kind = self.file.shapes.all[used.shape as usize].kind;
-        if matches!(kind, Kind::Vertex | Kind::Edge | Kind::Wire) {
-            return Ok(());
-        }
         self.cancel.check()?;
         let placement = match self.enter(path.len()).and_then(|()| self.placed(used, outer)) {
             Ok(placement) => placement,
@@ -59,11 +59,13 @@ impl Walk<'_> {
                 return Ok(());
             }
         };
-        if !matches!(kind, Kind::Compound | Kind::CompSolid) {
-            self.assembly.placed.push(Placed { shape: used.shape, placement, path: path.clone() });
-            return Ok(());
+        let made = || Placed { shape: used.shape, placement, path: path.clone() };
+        match kind {
+            Kind::Compound | Kind::CompSolid => return self.compound(used.shape, &placement, path),
+            Kind::Vertex | Kind::Edge | Kind::Wire => self.assembly.free.push(made()),
+            Kind::Face | Kind::Shell | Kind::Solid => self.assembly.placed.push(made()),
         }
-        self.compound(used.shape, &placement, path)
+        Ok(())
     }
 
     /// The parts of a compound; faces that are parts themselves make one body together.

@@ -75,13 +75,20 @@ impl Builder<'_> {
         if let Some(&known) = self.vertices.get(&(seen.shape, seen.place)) {
             return Ok(known);
         }
+        let point = self.vertex_point(seen)?;
+        let id = self.push_vertex(seen, point)?;
+        self.vertices.insert((seen.shape, seen.place), id);
+        Ok(id)
+    }
+
+    /// Where a vertex lies in its body.
+    pub(super) fn vertex_point(&self, seen: &Seen) -> Read<Point> {
         let Data::Vertex(point) = self.file.shapes.all[seen.shape as usize].data else {
             return Err(fault(seen, "a vertex was expected"));
         };
         let transform = self.locations.transform(seen.place).map_err(|why| fault(seen, why))?;
-        let id = self.push_vertex(seen, transform.map_or(point, |by| by.point(&point)))?;
-        self.vertices.insert((seen.shape, seen.place), id);
-        Ok(id)
+        let point = transform.map_or(point, |by| by.point(&point));
+        if point.iter().all(|c| c.is_finite()) { Ok(point) } else { Err(fault(seen, "a number that is not finite")) }
     }
 
     fn push_vertex(&mut self, seen: &Seen, point: Point) -> Read<VertexId> {
@@ -113,7 +120,12 @@ impl Builder<'_> {
     }
 
     /// The curve of an edge in its place, cut to the edge's range where its ends do not tell that by themselves.
-    fn space_curve(&mut self, seen: &Seen, of: &SpaceCurve, ends: [Option<VertexId>; 2]) -> Read<Arc<Curve>> {
+    pub(super) fn space_curve(
+        &mut self,
+        seen: &Seen,
+        of: &SpaceCurve,
+        ends: [Option<VertexId>; 2],
+    ) -> Read<Arc<Curve>> {
         let own = self.locations.numbered(of.location).map_err(|why| fault(seen, why))?;
         let place = self.locations.compose(seen.place, own).map_err(|why| fault(seen, why))?;
         let whole = self.placed_curve(seen, of.curve, place)?;

@@ -15,6 +15,7 @@ mod build;
 mod curves;
 mod edges;
 mod file;
+mod free_curves;
 mod locations;
 mod shapes;
 mod surfaces;
@@ -63,6 +64,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
     let assembly = assemble(&file, options.most_occurrences, cancel).map_err(stopped)?;
     let mut builder = Builder::new(&file);
     place(&mut builder, &assembly, options, cancel)?;
+    builder.add_free_curves(&assembly.free, cancel).map_err(stopped)?;
     let has_dangling = !file.shapes.dangling.is_empty();
     if has_dangling {
         let (first, count) = (file.shapes.dangling[0] + 1, file.shapes.dangling.len());

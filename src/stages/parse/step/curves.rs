@@ -67,7 +67,7 @@ impl Geometry<'_> {
             Kind::CurveReplica => {
                 let mut cursor = record.fields(&[Kind::RepresentationItem, Kind::CurveReplica]);
                 let parent = self.nested_curve(cursor.skip_many(1).reference()?, depth + 1)?;
-                super::replica::moved_curve(parent, &self.transform(cursor.reference()?)?)
+                crate::stages::parse::moved::moved_curve(parent, &self.transform(cursor.reference()?)?)
             }
             _ => return Ok(None),
         }))

@@ -22,7 +22,6 @@ mod keyword;
 mod lexer;
 mod placement;
 mod records;
-mod replica;
 mod representation;
 mod splines;
 mod structure;
@@ -55,7 +54,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
     let mut table = lexer::scan(bytes, cancel).map_err(stopped)?;
     let warnings = std::mem::take(&mut table.warnings);
     if table.entries.is_empty() {
-        let why = if table.marked { "no entities" } else { "not a STEP file" };
+        let why = if table.marked { "no entities" } else { "not a STEP, IGES or .brep file" };
         return Err(ModelError::new(Stage::Parse, why));
     }
     let file = File { bytes, table: &table };

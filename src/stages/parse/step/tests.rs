@@ -207,8 +207,8 @@ fn a_broken_face_is_skipped_with_its_number() {
 #[test]
 fn files_without_faces_say_why() {
     let why = |bytes: &[u8]| read(bytes, &Options::default(), &Cancel::new()).unwrap_err().why;
-    assert_eq!(why(b"solid ascii stl"), "not a STEP file");
-    assert_eq!(why(b""), "not a STEP file");
+    assert_eq!(why(b"solid ascii stl"), "not a STEP, IGES or .brep file");
+    assert_eq!(why(b""), "not a STEP, IGES or .brep file");
     assert_eq!(why(b"ISO-10303-21;DATA;ENDSEC;END-ISO-10303-21;"), "no entities");
     assert_eq!(why(b"DATA;#1=PRODUCT();"), "no shape representation");
     assert_eq!(why(b"#1=SHAPE_REPRESENTATION('',(#2),#3);#2=GEOMETRIC_CURVE_SET('',());"), "wireframe only: no faces");
