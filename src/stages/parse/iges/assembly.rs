@@ -44,7 +44,7 @@ pub(super) fn assemble(file: &File, room: usize, cancel: &Cancel) -> Result<Asse
     let assembly = Assembly { placed: Vec::new(), loose: FxHashMap::default(), free: Vec::new(), faults: Vec::new() };
     // A file that marks no entity as a part of others does not tell free curves from edges.
     let has_free_curves = file.entries.iter().any(|entry| entry.dependent);
-    let mut walk = Walk { file, room, cancel, has_free_curves, assembly };
+    let mut walk = Walk { file, room, cancel, has_free_curves, above: Vec::new(), assembly };
     let shown = |purpose: u32| !matches!(purpose, 1 | 2 | 5);
     let all = file.numbered().filter(|(_, entry)| !entry.blanked && shown(entry.purpose));
     let roots: Vec<u64> = all.filter(|(_, entry)| !entry.dependent).map(|(entity, _)| entity).collect();
@@ -72,6 +72,8 @@ struct Walk<'a> {
     room: usize,
     cancel: &'a Cancel,
     has_free_curves: bool,
+    /// The entities from the top to the one that is placed.
+    above: Vec<u64>,
     assembly: Assembly,
 }
 
@@ -85,6 +87,8 @@ impl Walk<'_> {
         path: &mut Vec<u64>,
     ) -> Result<(), Cancelled> {
         let kind = |entity: &u64| self.file.entry(*entity).map_or(0, |entry| entry.kind);
+        let shown = |entity: &u64| !self.file.entry(*entity).is_ok_and(|entry| entry.blanked);
+        let items: Vec<u64> = items.iter().copied().filter(shown).collect();
         let loose: Vec<u64> = items.iter().copied().filter(|entity| is_face(kind(entity))).collect();
         if !loose.is_empty() {
             let source = Source::Loose(owner);
@@ -112,21 +116,23 @@ impl Walk<'_> {
         if !matches!(kind, 184 | 186 | 402 | 408 | 430 | 514) {
             return Ok(Ok(()));
         }
-        let Some(room) = self.room.checked_sub(1) else {
-            return Ok(Err(Fault::new(entity, "too many bodies are placed")));
+        let (own, parts) = match self.enter(entity).and_then(|()| self.parts(entity, kind)) {
+            Ok(found) => found,
+            Err(fault) => return Ok(Err(fault)),
         };
+        self.above.push(entity);
+        self.place(entity, parts, &placement.after(&own), path)?;
+        self.above.pop();
+        Ok(Ok(()))
+    }
+
+    fn enter(&mut self, entity: u64) -> Read<()> {
+        let room = self.room.checked_sub(1).ok_or_else(|| Fault::new(entity, "too many bodies are placed"))?;
         self.room = room;
-        if path.len() > DEEPEST_NESTING || path.contains(&entity) {
-            return Ok(Err(Fault::new(entity, "nested too deep")));
+        if self.above.contains(&entity) {
+            return Err(Fault::new(entity, "an entity that is part of itself"));
         }
-        match self.parts(entity, kind) {
-            Err(fault) => Ok(Err(fault)),
-            Ok((own, parts)) => {
-                let placement = placement.after(&own);
-                self.place(entity, parts, &placement, path)?;
-                Ok(Ok(()))
-            }
-        }
+        if self.above.len() > DEEPEST_NESTING { Err(Fault::new(entity, "nested too deep")) } else { Ok(()) }
     }
 
     /// Where an entity lies, and what it consists of with the place of each.

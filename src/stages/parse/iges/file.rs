@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::global::{Global, global};
 use super::lines::Sections;
 use super::values::{Value, values};
+use crate::cancel::Cancel;
 use crate::stages::parse::fault::{Fault, Read};
 
 /// Two lines of the directory: what an entity is. Its number is that of the first line, which is odd.
@@ -32,6 +33,7 @@ pub(super) struct File<'a> {
     parameters: Vec<&'a [u8]>,
     /// Things that may still be made.
     budget: Cell<usize>,
+    cancel: Cancel,
 }
 
 /// An entity with its parameters, behind the type.
@@ -50,10 +52,10 @@ pub(super) struct Fields<'r> {
 }
 
 impl<'a> File<'a> {
-    pub fn new(sections: Sections<'a>, bytes: usize) -> Self {
+    pub fn new(sections: Sections<'a>, bytes: usize, cancel: &Cancel) -> Self {
         let entries = sections.directory.chunks_exact(2).map(|pair| entry(pair[0], pair[1])).collect();
         let global = global(&sections.global);
-        Self { entries, global, parameters: sections.parameters, budget: Cell::new(bytes) }
+        Self { entries, global, parameters: sections.parameters, budget: Cell::new(bytes), cancel: cancel.clone() }
     }
 
     /// All entries with their numbers.
@@ -68,12 +70,16 @@ impl<'a> File<'a> {
     }
 
     /// An entity with its parameters.
+    ///
+    /// # Errors
+    /// Where it is not there, nothing more may be made, and when cancelled.
     pub fn record(&self, entity: u64) -> Read<Record> {
         let entry = *self.entry(entity)?;
         let first = (entry.first as usize).saturating_sub(1);
         let lines = self.parameters.get(first..).unwrap_or_default();
         let lines = &lines[..lines.len().min(entry.lines.max(1) as usize)];
         self.spend(entity, lines.len())?;
+        self.cancel.check().map_err(|c| Fault::new(entity, c.to_string()))?;
         let mut values = values(&lines.concat(), self.global.delimiters);
         if values.first() != Some(&Value::Real(f64::from(entry.kind))) {
             return Err(Fault::new(entity, "its parameters are not there"));

@@ -63,7 +63,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
         None => return Err(failed("not an IGES file")),
     }
     let sections = lines::sections(bytes, cancel).map_err(stopped)?;
-    let file = File::new(sections, bytes.len());
+    let file = File::new(sections, bytes.len(), cancel);
     if file.entries.is_empty() {
         return Err(failed("no entities"));
     }
@@ -71,6 +71,7 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
     let mut builder = Builder::new(&file);
     build(&mut builder, &assembly, options, cancel)?;
     free_curves(&mut builder, &assembly, cancel).map_err(stopped)?;
+    cancel.check().map_err(stopped)?;
     let Builder { model, mut notes, .. } = builder;
     assembly.faults.into_iter().for_each(|fault| notes.skip(fault.entity, fault));
     let (skipped, warnings) = notes.finish();

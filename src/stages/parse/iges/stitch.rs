@@ -40,7 +40,7 @@ impl<'a> Stitcher<'a> {
             .flat_map(|p| [0.0, 0.5, 1.0].map(|s| p.along(s)));
         let mut aabb = Aabb::default();
         ends.for_each(|p| aabb.add(&p));
-        let size = aabb.diagonal();
+        let size = Some(aabb.diagonal()).filter(|size| size.is_finite()).unwrap_or_default();
         let tolerance = resolution.clamp(TOGETHER * size, MOST_TOGETHER * size).max(f64::MIN_POSITIVE);
         Self { model, tolerance, cells: FxHashMap::default(), between: FxHashMap::default() }
     }

@@ -186,7 +186,7 @@ fn files_without_faces_say_why() {
     assert_eq!(why(&[entity(110, "0.,0.,0.,1.,0.,0.")]), (None, "no faces".into()));
     assert_eq!(why(&[entity(144, "9,1,0,5")]), (Some(1), "no face could be read: #9: there is no such entity".into()));
     assert_eq!(why(&[entity(144, "1,1,0,5")]).1, "no face could be read: not a surface that is known");
-    assert_eq!(why(&[entity(184, "1,1")]), (Some(1), "no face could be read: nested too deep".into()));
+    assert_eq!(why(&[entity(184, "1,1")]), (Some(1), "no face could be read: an entity that is part of itself".into()));
     assert_eq!(
         why(&[entity(128, "999999,999999,1,1")]).1,
         "no face could be read: too few parameters for what they announce"

@@ -9,6 +9,8 @@ use crate::stages::parse::fault::{Fault, Read};
 use crate::stages::parse::moved::moved_curve;
 use crate::stages::parse::on_surface;
 
+/// Points of a traced curve that count as one thing made: the file gives fewer numbers for them.
+const POINTS_OF_ONE: usize = 4;
 /// Points of each piece for the direction of a loop in parameter space.
 const SAMPLES: usize = 8;
 
@@ -49,7 +51,7 @@ impl File<'_> {
                 if !sheet.is_bounded() {
                     return Ok(None);
                 }
-                let whole = natural_loop(entity, &sheet)?;
+                let whole = self.natural_loop(entity, &sheet)?;
                 return Ok(Some(raw(entity, &sheet, vec![whole])));
             }
         };
@@ -67,7 +69,7 @@ impl File<'_> {
         let outer = fields.optional_pointer()?.filter(|_| has_outer);
         let mut loops = vec![match outer {
             Some(outer) => self.curve_on_surface(outer, &sheet, true)?,
-            None => natural_loop(record.entity, &sheet)?,
+            None => self.natural_loop(record.entity, &sheet)?,
         }];
         for hole in fields.pointers(inner)? {
             loops.push(self.curve_on_surface(hole, &sheet, false)?);
@@ -95,12 +97,31 @@ impl File<'_> {
         Ok(RawLoop { entity, pieces, reversed })
     }
 
+    /// The border of a surface's own rectangle, counter-clockwise in the parameters of the file.
+    fn natural_loop(&self, entity: u64, sheet: &Sheet) -> Read<RawLoop> {
+        if !sheet.is_bounded() {
+            return Err(Fault::new(entity, "a surface without end needs an outer boundary"));
+        }
+        let [u0, u1, v0, v1] = sheet.bounds;
+        let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|[u, v]| Point::new(u, v, 0.0));
+        let mut pieces = Vec::with_capacity(4);
+        for side in 0..4 {
+            let (from, to) = (corners[side], corners[(side + 1) % 4]);
+            let flat = Curve::Line { origin: from, direction: to - from };
+            let traced = on_surface::traced(&sheet.surface, &on_surface::Chart::default(), &flat, [0.0, 1.0]);
+            let traced = traced.map_err(|why| Fault::new(entity, why))?;
+            self.spend(entity, traced.points.len() / POINTS_OF_ONE)?;
+            pieces.push(placed(entity, Curve::Nurbs(traced), [0.0, 1.0], sheet));
+        }
+        Ok(RawLoop { entity, pieces, reversed: sheet.chart.turns() })
+    }
+
     fn traced(&self, sheet: &Sheet, flat: Vec<Piece>) -> Read<Vec<Piece>> {
         let mut pieces = Vec::with_capacity(flat.len());
         for Piece { entity, curve, range } in flat {
             let traced = on_surface::traced(&sheet.surface, &sheet.chart, &curve, range);
             let traced = traced.map_err(|why| Fault::new(entity, why))?;
-            self.spend(entity, traced.points.len() / 8)?;
+            self.spend(entity, traced.points.len() / POINTS_OF_ONE)?;
             pieces.push(placed(entity, Curve::Nurbs(traced), range, sheet));
         }
         Ok(pieces)
@@ -163,24 +184,6 @@ fn placed(entity: u64, curve: Curve, range: [f64; 2], sheet: &Sheet) -> Piece {
         None => curve,
     };
     Piece { entity, curve, range }
-}
-
-/// The border of a surface's own rectangle, counter-clockwise in the parameters of the file.
-fn natural_loop(entity: u64, sheet: &Sheet) -> Read<RawLoop> {
-    if !sheet.is_bounded() {
-        return Err(Fault::new(entity, "a surface without end needs an outer boundary"));
-    }
-    let [u0, u1, v0, v1] = sheet.bounds;
-    let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]].map(|[u, v]| Point::new(u, v, 0.0));
-    let mut pieces = Vec::with_capacity(4);
-    for side in 0..4 {
-        let (from, to) = (corners[side], corners[(side + 1) % 4]);
-        let flat = Curve::Line { origin: from, direction: to - from };
-        let traced = on_surface::traced(&sheet.surface, &on_surface::Chart::default(), &flat, [0.0, 1.0]);
-        let traced = traced.map_err(|why| Fault::new(entity, why))?;
-        pieces.push(placed(entity, Curve::Nurbs(traced), [0.0, 1.0], sheet));
-    }
-    Ok(RawLoop { entity, pieces, reversed: sheet.chart.turns() })
 }
 
 /// Of the polygon of points of the pieces.
