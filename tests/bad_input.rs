@@ -247,7 +247,7 @@ fn what_is_no_step_file_is_told() {
     for bytes in
         [&b""[..], b"\0\0\0\0", b"solid cube\nendsolid", b"PK\x03\x04", &[0xff; 4000], b"#", b"'", b"/*", b"(((("]
     {
-        assert_eq!(why(bytes), "not a STEP file");
+        assert_eq!(why(bytes), "not a STEP, IGES or .brep file");
     }
     assert_eq!(why(b"ISO-10303-21;HEADER;ENDSEC;DATA;ENDSEC;END-ISO-10303-21;"), "no entities");
 }
