@@ -149,7 +149,7 @@ impl Knots {
                 values.extend(std::iter::repeat_n(knot, times));
             }
         }
-        if periodic && fits && first <= degree && values.len() == count + first {
+        if periodic && fits && count > 0 && first <= degree && values.len() == count + first {
             return Ok(Self::unrolled(&values, degree + 1 - first, first));
         }
         Ok(Self { values: if fits && !periodic { values } else { Vec::new() }, extra: 0 })
@@ -228,6 +228,7 @@ mod tests {
         assert_eq!(why("1 0 0 nan 1 0 0"), "a number that is not finite");
         let knots = "7 0 1 2 4 2  0 0 0  2 0 0  2 2 0  0 2 0  0 9 1 9";
         assert_eq!(why(knots), "knots that do not fit the control points");
+        assert_eq!(why("7 0 1 2 0 1  0 1"), "knots that do not fit the control points");
         assert!(curve(&mut Words::new(b"1 0 0 x"), Space::Space).is_err());
         assert!(curve(&mut Words::new("8 0 1 ".repeat(100_000).as_bytes()), Space::Space).is_err());
     }
