@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use symalign::alignment::Method;
+use symalign::evaluate::Named;
 use symalign::pipeline::Shard;
 use symalign::search::Name;
 use symalign::settings::Profile;
@@ -67,7 +68,8 @@ pub struct Run {
     /// Set of defaults that the settings file lies over
     #[arg(long, value_name = "NAME", value_parser = profile)]
     pub profile: Option<Profile>,
-    /// Categories: a CSV file, or `parent-folder` [default: labels.csv in the input folder, if it is there]
+    /// Categories: a CSV file (path,category), a Princeton .cla file, or `parent-folder` [default: labels.csv in the
+    /// input folder, if it is there]
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
     /// Folder that the report is written to
@@ -77,18 +79,27 @@ pub struct Run {
 
 #[derive(Debug, Args)]
 pub struct Eval {
-    /// Folder of the store
-    #[arg(long, value_name = "DIR", default_value = "store")]
-    pub store: PathBuf,
-    /// Categories: a CSV file, or `parent-folder`
-    #[arg(long, value_name = "FILE", default_value = "parent-folder")]
-    pub labels: PathBuf,
+    /// Folder of the store [default: store; none where the results of others are given]
+    #[arg(long, value_name = "DIR")]
+    pub store: Option<PathBuf>,
+    /// Categories: a CSV file (path,category), a Princeton .cla file, or `parent-folder` [default: parent-folder]
+    #[arg(long, value_name = "FILE")]
+    pub labels: Option<PathBuf>,
     /// Folder that the report is written to
     #[arg(long, value_name = "DIR", default_value = "report")]
     pub out: PathBuf,
-    /// Methods to score, such as cpca or cpca:phase [default: all in the store]
+    /// Methods of the store to score, such as cpca, cpca:phase or cpca:swapped [default: all, magnitudes and phases]
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub method: Option<Vec<Name>>,
+    /// Score a Princeton distance matrix too, its rows in the order of the labels; may be repeated
+    #[arg(long, value_name = "[NAME=]FILE")]
+    pub matrix: Vec<Named>,
+    /// Score a TREC run too; may be repeated
+    #[arg(long, value_name = "[NAME=]FILE")]
+    pub run: Vec<Named>,
+    /// TREC judgements in place of labels
+    #[arg(long, value_name = "FILE", conflicts_with = "labels")]
+    pub qrels: Option<PathBuf>,
     /// Average as another evaluator does
     #[arg(long, value_enum)]
     pub compat: Option<Compat>,
@@ -246,6 +257,15 @@ mod tests {
     fn exit_codes_are_those_of_the_contract() {
         let codes = [Exit::Done, Exit::ModelFailed, Exit::CannotRun, Exit::Interrupted].map(Exit::code);
         assert_eq!(codes, [0, 1, 2, 130]);
+    }
+
+    #[test]
+    fn results_of_others_are_named() {
+        let line = ["symalign", "eval", "--matrix", "a.matrix", "--matrix", "b=c", "--run", "x.run", "--qrels", "q"];
+        let Command::Eval(eval) = Cli::try_parse_from(line).unwrap().command else { panic!("not an eval") };
+        let names: Vec<_> = eval.matrix.iter().chain(&eval.run).map(|named| named.name.as_str()).collect();
+        assert_eq!(names, ["a", "b", "x"]);
+        assert!(Cli::try_parse_from(["symalign", "eval", "--qrels", "q", "--labels", "l"]).is_err());
     }
 
     #[test]

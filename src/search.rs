@@ -19,16 +19,32 @@ use std::str::FromStr;
 /// Rows that a thread looks through at a time.
 const CHUNK: usize = 4096;
 
-/// The two descriptors of a model in a frame.
+/// The descriptors of a model in a frame, and how they are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// The magnitudes of the Fourier coefficients: blind to turns and mirrors in the picture plane.
     Magnitude,
     /// The complex coefficients, compared under the best signs of the axes.
     Phase,
+    /// The magnitudes, compared in the better order of the second and third view.
+    Swapped,
 }
 
-/// A frame and a descriptor: "symmetry", or "symmetry:phase" for the phases.
+impl Kind {
+    const ALL: [Self; 3] = [Self::Magnitude, Self::Phase, Self::Swapped];
+
+    /// What follows the frame in a name.
+    fn suffix(self) -> &'static str {
+        match self {
+            Self::Magnitude => "",
+            Self::Phase => ":phase",
+            Self::Swapped => ":swapped",
+        }
+    }
+}
+
+/// A frame and a descriptor: "symmetry", "symmetry:phase" for the phases, "symmetry:swapped" for the magnitudes in
+/// the better order of the second and third view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Name {
     pub frame: Method,
@@ -37,8 +53,7 @@ pub struct Name {
 
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let suffix = if self.kind == Kind::Phase { ":phase" } else { "" };
-        write!(f, "{}{suffix}", self.frame.name())
+        write!(f, "{}{}", self.frame.name(), self.kind.suffix())
     }
 }
 
@@ -46,16 +61,12 @@ impl FromStr for Name {
     type Err = String;
 
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let (frame, kind) = match text.strip_suffix(":phase") {
-            Some(frame) => (frame, Kind::Phase),
-            None => (text, Kind::Magnitude),
-        };
-        let frame = Method::ALL.into_iter().find(|method| method.name() == frame);
-        frame.map(|frame| Self { frame, kind }).ok_or(format!("there is no method `{text}`"))
+        let names = Method::ALL.into_iter().flat_map(|frame| Kind::ALL.map(|kind| Self { frame, kind }));
+        names.into_iter().find(|name| name.to_string() == text).ok_or(format!("there is no method `{text}`"))
     }
 }
 
-/// All that a store can be searched by: the magnitudes of its frames, then the phases.
+/// What a store is evaluated by unless told otherwise: the magnitudes of its frames, then the phases.
 pub fn names(store: &Store) -> Vec<Name> {
     let of = |kind| store.methods().iter().map(move |&frame| Name { frame, kind });
     of(Kind::Magnitude).chain(of(Kind::Phase)).collect()
@@ -76,7 +87,7 @@ impl<'a> Rows<'a> {
     /// A frame that the store does not hold, named with those that it does.
     pub fn of(store: &'a Store, name: Name) -> Result<Self> {
         let (values, length) = match name.kind {
-            Kind::Magnitude => (store.magnitudes(name.frame), MAGNITUDES),
+            Kind::Magnitude | Kind::Swapped => (store.magnitudes(name.frame), MAGNITUDES),
             Kind::Phase => (store.phases(name.frame), PHASES),
         };
         let values = values.ok_or_else(|| {
@@ -96,6 +107,7 @@ impl<'a> Rows<'a> {
         match self.kind {
             Kind::Magnitude => distance::magnitude(a, b),
             Kind::Phase => distance::phase(a, b),
+            Kind::Swapped => distance::magnitude_swapped(a, b),
         }
     }
 
@@ -104,6 +116,7 @@ impl<'a> Rows<'a> {
         match self.kind {
             Kind::Magnitude => distance::magnitude_views(a, b),
             Kind::Phase => distance::phase_views(a, b),
+            Kind::Swapped => distance::magnitude_swapped_views(a, b),
         }
     }
 
@@ -212,7 +225,7 @@ mod tests {
 
     #[test]
     fn names_come_back() {
-        for text in ["symmetry", "cpca:phase"] {
+        for text in ["symmetry", "cpca:phase", "pca:swapped"] {
             assert_eq!(text.parse::<Name>().unwrap().to_string(), text);
         }
         assert!("magic".parse::<Name>().is_err());

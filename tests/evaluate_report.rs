@@ -3,16 +3,24 @@
 mod synthetic;
 
 use std::path::Path;
-use symalign::evaluate::{self, Evaluation, Labels, Options};
+use symalign::evaluate::{self, Evaluation, Input, Labels, Named, Options, Summary};
 use symalign::search::{self, Asked, Name};
 use symalign::store::Store;
 
-fn evaluated(dir: &Path, options: &Options) -> (Store, Evaluation) {
+/// The synthetic store in `dir`, evaluated into `out`.
+fn reported(dir: &Path, out: &Path, options: &Options) -> (Store, Evaluation) {
     synthetic::store(dir);
     let store = Store::open(dir).unwrap();
-    let labels = Labels::load(&dir.join("labels.csv")).unwrap();
-    let evaluation = evaluate::evaluate(&store, &labels, options).unwrap();
+    let evaluation = evaluate::report(&Input::of_store(&store, labels(dir)), options, out).unwrap();
     (store, evaluation)
+}
+
+fn labels(dir: &Path) -> Labels {
+    Labels::load(&dir.join("labels.csv")).unwrap()
+}
+
+fn summary<'a>(evaluation: &'a Evaluation, name: &str) -> &'a Summary {
+    &evaluation.methods.iter().find(|m| m.name == name).unwrap().summary
 }
 
 fn quick() -> Options {
@@ -22,10 +30,9 @@ fn quick() -> Options {
 #[test]
 fn all_files_are_written_and_what_is_missing_is_said() {
     let folder = tempfile::tempdir().unwrap();
-    let (store, evaluation) = evaluated(folder.path(), &quick());
     // a folder to look at: SYMALIGN_REPORT=/tmp/report cargo test --release --test evaluate_report
     let out = std::env::var("SYMALIGN_REPORT").map_or_else(|_| folder.path().join("out"), Into::into);
-    evaluate::write(&evaluation, &store, &out).unwrap();
+    reported(folder.path(), &out, &quick());
     for name in ["report.html", "metrics.json", "pr.csv", "per_query.csv", "pr.png", "labels.cla", "qrels.trec"] {
         assert!(out.join(name).metadata().unwrap().len() > 100, "{name}");
     }
@@ -46,32 +53,79 @@ fn all_files_are_written_and_what_is_missing_is_said() {
 }
 
 #[test]
-fn matrices_of_other_people_score_as_the_store_they_came_from() {
+fn matrices_and_runs_of_other_people_score_as_the_store_they_came_from() {
     let folder = tempfile::tempdir().unwrap();
-    let (store, evaluation) = evaluated(folder.path(), &quick());
     let (out, again) = (folder.path().join("out"), folder.path().join("again"));
-    evaluate::write(&evaluation, &store, &out).unwrap();
-    let matrices = [out.join("symmetry.matrix"), out.join("pca.matrix")];
-    let theirs = evaluate::report_matrices(&matrices, &out.join("labels.cla"), &quick(), &again).unwrap();
-    for name in ["symmetry", "pca"] {
-        let of = |evaluation: &Evaluation| evaluation.methods.iter().find(|m| m.name == name).unwrap().summary.clone();
-        // distances are rounded to f32 on the way, which may swap neighbours that are all but tied
-        assert!((of(&evaluation).micro.ap - of(&theirs).micro.ap).abs() < 1e-3, "{name}");
-    }
+    let (_, evaluation) = reported(folder.path(), &out, &quick());
+    let file = |name: &str| Named { name: name.replace(".run.trec", ":run"), path: out.join(name) };
+    let matrices = vec![Named { name: "symmetry".into(), ..file("symmetry.matrix") }];
+    let runs = vec![file("symmetry.run.trec")];
+    let labels = Labels::load(&out.join("labels.cla")).unwrap();
+    let theirs = evaluate::report(&Input { store: None, labels, matrices, runs }, &quick(), &again).unwrap();
+    let ours = summary(&evaluation, "symmetry");
+    assert_eq!(summary(&theirs, "symmetry:run"), ours, "ranks lose nothing");
+    // distances are rounded to f32 on the way, which may swap neighbours that are all but tied
+    assert!((summary(&theirs, "symmetry").micro.ap - ours.micro.ap).abs() < 1e-3);
     let page = std::fs::read_to_string(again.join("report.html")).unwrap();
     assert!(!page.contains("id=\"gallery\""), "there are no pictures");
+    let same =
+        |name: &str| assert_eq!(std::fs::read(out.join(name)).unwrap(), std::fs::read(again.join(name)).unwrap());
+    same("symmetry.matrix");
+    same("labels.cla");
+}
+
+#[test]
+fn a_peer_s_matrix_stands_beside_the_store_s_methods_on_the_models_of_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let (store, _) = reported(folder.path(), &out, &quick());
+    // the peer's labels have one model more than the store, first, at distance 0 from all
+    let cla = "PSB 1\n3 98\nextra 0 1\nnew\n".to_owned();
+    let rest = std::fs::read_to_string(out.join("labels.cla")).unwrap();
+    let classes = rest.split_once("\n\n").unwrap().1;
+    std::fs::write(folder.path().join("peer.cla"), cla.replace("3 98", "10 98") + classes).unwrap();
+    let matrix = std::fs::read(out.join("npca.matrix")).unwrap();
+    let mut wider = vec![0; 4 * 98];
+    matrix.chunks(4 * 97).for_each(|row| wider.extend([&[0; 4], row].concat()));
+    std::fs::write(folder.path().join("peer.matrix"), wider).unwrap();
+    let labels = Labels::load(&folder.path().join("peer.cla")).unwrap();
+    let matrices = vec![folder.path().join("peer.matrix").to_str().unwrap().parse().unwrap()];
+    let input = Input { matrices, ..Input::of_store(&store, labels) };
+    let evaluation = evaluate::evaluate(&input, &quick()).unwrap();
+    let (peer, own) = (summary(&evaluation, "peer"), summary(&evaluation, "npca"));
+    assert!((peer.micro.ap - own.micro.ap).abs() < 1e-3);
+    assert_eq!(evaluation.coverage.missing[0].path, "new");
+    assert!(evaluation.coverage.files[0].contains("97 of its 98 models"), "{:?}", evaluation.coverage.files);
+    assert!(evaluation.comparisons.iter().any(|c| (c.a.as_str(), c.b.as_str()) == ("symmetry", "peer")));
+}
+
+#[test]
+fn judgements_stand_for_labels() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let (_, evaluation) = reported(folder.path(), &out, &quick());
+    let runs: Vec<Named> = vec![out.join("npca-phase.run.trec").to_str().unwrap().parse().unwrap()];
+    let labels = evaluate::judgements(&out.join("qrels.trec"), &runs).unwrap();
+    let input = Input { store: None, labels, matrices: Vec::new(), runs };
+    let theirs = evaluate::evaluate(&input, &quick()).unwrap();
+    let (theirs, ours) = (summary(&theirs, "npca-phase"), summary(&evaluation, "npca:phase"));
+    assert_eq!((theirs.micro, theirs.micro_curves), (ours.micro, ours.micro_curves));
 }
 
 #[test]
 fn methods_are_chosen_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    let chosen = |names: &[&str]| Options { methods: names.iter().map(|n| (*n).to_owned()).collect(), ..quick() };
-    let (store, evaluation) = evaluated(folder.path(), &chosen(&["cpca", "symmetry:phase"]));
-    let names: Vec<_> = evaluation.methods.iter().map(|m| m.name.as_str()).collect();
-    assert_eq!(names, ["cpca", "symmetry:phase", "cpca:phase"]);
-    let labels = Labels::load(&folder.path().join("labels.csv")).unwrap();
-    assert!(evaluate::evaluate(&store, &labels, &chosen(&["file"])).is_err(), "not in the store");
-    assert!(evaluate::evaluate(&store, &labels, &chosen(&["magic"])).is_err());
+    synthetic::store(folder.path());
+    let store = Store::open(folder.path()).unwrap();
+    let evaluated = |names: &[&str]| {
+        let options = Options { methods: names.iter().map(|n| (*n).to_owned()).collect(), ..quick() };
+        evaluate::evaluate(&Input::of_store(&store, labels(folder.path())), &options)
+    };
+    let names = |evaluation: Evaluation| evaluation.methods.into_iter().map(|m| m.name).collect::<Vec<_>>();
+    assert_eq!(names(evaluated(&["cpca", "symmetry:phase"]).unwrap()), ["cpca", "symmetry:phase", "cpca:phase"]);
+    assert_eq!(names(evaluated(&["pca:swapped"]).unwrap()), ["pca:swapped"]);
+    assert!(evaluated(&["file"]).is_err(), "not in the store");
+    assert!(evaluated(&["magic"]).is_err());
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn described(args: &Query, settings: &Settings) -> Result<std::result::Result<De
 fn descriptor(record: &ModelRecord, name: Name) -> &[f32] {
     let pose = record.poses.iter().find(|pose| pose.method == name.frame);
     match name.kind {
-        Kind::Magnitude => pose.map_or(&[], |pose| &pose.magnitude),
+        Kind::Magnitude | Kind::Swapped => pose.map_or(&[], |pose| &pose.magnitude),
         Kind::Phase => pose.map_or(&[], |pose| &pose.phase),
     }
 }

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use symalign::error::{Result, RunError};
-use symalign::evaluate::Options;
 use symalign::pipeline::{self, Progress, Report, Request};
 use symalign::settings::Settings;
 
@@ -39,7 +38,7 @@ pub fn run(args: &Run) -> Result<Exit> {
 fn score(settings: &Settings, args: &Run, report: &Report) -> Result<()> {
     match &settings.labels {
         Some(labels) if args.shard.is_none() && report.done > 0 => {
-            super::eval::score(&settings.store, labels, &settings.report, &Options::default())
+            super::eval::score(&settings.store, labels, &settings.report)
         }
         _ => Ok(()),
     }

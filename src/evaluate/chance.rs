@@ -8,6 +8,7 @@ use rand::SeedableRng;
 use rand::seq::index;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Random rankings drawn for the interpolated curve, whose expectation has no simple form;
 /// with 4,000 its standard error is below 0.005 for one class and a fraction of that in the mean.
@@ -29,16 +30,18 @@ pub fn random(gallery: &Gallery, seed: u64) -> Summary {
 pub fn ideal(gallery: &Gallery) -> Summary {
     by_class(gallery, |class| {
         let ranks: Vec<_> = (1..=class.relevant()).collect();
-        (Scores::of(&ranks, gallery.len() - 1), Curves::of(&ranks))
+        (Scores::of(&ranks, ranks.len(), gallery.len() - 1), Curves::of(&ranks, ranks.len()))
     })
 }
 
-/// The summary where all queries of a class have the same results.
+/// The summary where the results of a query depend on the size of its class only; each size is computed once.
 fn by_class(gallery: &Gallery, results: impl Fn(&Class) -> (Scores, Curves) + Sync) -> Summary {
-    let queried: Vec<_> = gallery.queried().collect();
-    let results: Vec<_> = queried.par_iter().map(|class| results(class)).collect();
-    let queries =
-        queried.iter().zip(&results).flat_map(|(class, (s, c))| class.members.clone().map(move |q| (q, s, c)));
+    let sizes: BTreeMap<_, _> = gallery.queried().map(|class| (class.size(), class)).collect();
+    let results: BTreeMap<_, _> = sizes.into_par_iter().map(|(size, class)| (size, results(class))).collect();
+    let queries = gallery.queried().flat_map(|class| {
+        let (scores, curves) = &results[&class.size()];
+        class.members.clone().map(move |query| (query, scores, curves))
+    });
     Summary::of(gallery, queries)
 }
 
@@ -68,7 +71,7 @@ fn drawn_curve(relevant: usize, others: usize, seed: u64) -> [f64; INTERPOLATED]
     for _ in 0..DRAWS {
         let mut ranks: Vec<_> = index::sample(&mut rng, others, relevant).into_iter().map(|i| i + 1).collect();
         ranks.sort_unstable();
-        sum.iter_mut().zip(Curves::of(&ranks).pr11).for_each(|(sum, p)| *sum += p);
+        sum.iter_mut().zip(Curves::of(&ranks, relevant).pr11).for_each(|(sum, p)| *sum += p);
     }
     sum.map(|sum| sum / DRAWS as f64)
 }
@@ -106,7 +109,7 @@ mod tests {
     fn the_drawn_curve_is_near_the_mean_over_all_rankings() {
         let all = subsets(10, 3);
         for (level, drawn) in drawn_curve(3, 10, 1).iter().enumerate() {
-            let mean = all.iter().map(|ranks| Curves::of(ranks).pr11[level]).sum::<f64>() / all.len() as f64;
+            let mean = all.iter().map(|ranks| Curves::of(ranks, 3).pr11[level]).sum::<f64>() / all.len() as f64;
             assert!((mean - drawn).abs() < 0.02, "{level}: {mean} {drawn}");
         }
     }

@@ -119,16 +119,21 @@ fn id_order(models: &[(&str, &str, usize)]) -> Vec<u32> {
 pub(crate) mod tests {
     use super::*;
 
+    fn assignment(categories: &[&str]) -> Assignment {
+        let pairs: Vec<_> = categories.iter().map(|category| (String::new(), (*category).to_owned())).collect();
+        Assignment::whole(&pairs)
+    }
+
     /// A gallery whose model i is called `mi` and belongs to `categories[i]`; give categories in order.
     pub(crate) fn gallery(categories: &[&str]) -> Gallery {
         let ids: Vec<_> = (0..categories.len()).map(|i| format!("m{i:04}")).collect();
         let ids: Vec<_> = ids.iter().map(String::as_str).collect();
-        Gallery::new(&ids, &Assignment::of(categories), false)
+        Gallery::new(&ids, &assignment(categories), false)
     }
 
     #[test]
     fn models_come_class_by_class_and_ties_go_by_id() {
-        let gallery = Gallery::new(&["z", "b", "a", "y"], &Assignment::of(&["one", "two", "two", "one"]), false);
+        let gallery = Gallery::new(&["z", "b", "a", "y"], &assignment(&["one", "two", "two", "one"]), false);
         assert_eq!(gallery.ids, ["y", "z", "a", "b"]);
         assert_eq!(gallery.rows, [3, 0, 2, 1]);
         assert_eq!(gallery.id_order, [2, 3, 0, 1]);
@@ -144,7 +149,7 @@ pub(crate) mod tests {
 
     #[test]
     fn princeton_compatibility_drops_pairs() {
-        let assignment = Assignment::of(&["pair", "pair", "three", "three", "three"]);
+        let assignment = assignment(&["pair", "pair", "three", "three", "three"]);
         let gallery = Gallery::new(&["a", "b", "c", "d", "e"], &assignment, true);
         assert_eq!(gallery.queries(), [2, 3, 4]);
     }

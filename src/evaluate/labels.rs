@@ -28,14 +28,17 @@ pub struct Missing {
 pub struct Assignment {
     /// The category of each id, in their order.
     pub category_of: Vec<Option<String>>,
+    /// The place of each id's label in their table; `None` too where its folder is the label.
+    pub label_of: Vec<Option<usize>>,
     /// Labels that no id has.
     pub missing: Vec<Missing>,
 }
 
 impl Assignment {
-    /// Every model labelled, none missing.
-    pub fn of(categories: &[&str]) -> Self {
-        Self { category_of: categories.iter().map(|c| Some((*c).to_owned())).collect(), missing: Vec::new() }
+    /// Models that are those of the labels, in their order.
+    pub fn whole(pairs: &[(String, String)]) -> Self {
+        let category_of = pairs.iter().map(|(_, category)| Some(category.clone())).collect();
+        Self { category_of, label_of: (0..pairs.len()).map(Some).collect(), missing: Vec::new() }
     }
 
     /// The number of models with a category.
@@ -58,6 +61,14 @@ impl Labels {
         let classification = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("cla"));
         let pairs = if classification { cla::read(&text) } else { read_csv(&text) };
         pairs.and_then(Self::table).map_err(|why| RunError::Usage(format!("labels {}: {why}", path.display())))
+    }
+
+    /// The (path, category) pairs; none for parent folders.
+    pub fn pairs(&self) -> &[(String, String)] {
+        match self {
+            Self::Table(pairs) => pairs,
+            Self::ParentFolder => &[],
+        }
     }
 
     /// Labels from (path, category) pairs.
@@ -92,7 +103,8 @@ impl Labels {
                     let (path, category) = ((*id).to_owned(), parent_folder(id)?);
                     Some(Missing { path, category, why: Some(why.clone()) })
                 });
-                Assignment { category_of: ids.iter().map(|id| parent_folder(id)).collect(), missing: failed.collect() }
+                let category_of = ids.iter().map(|id| parent_folder(id)).collect();
+                Assignment { category_of, label_of: vec![None; ids.len()], missing: failed.collect() }
             }
             Self::Table(pairs) => assign_table(pairs, ids, failures),
         }
@@ -105,17 +117,14 @@ fn assign_table(pairs: &[(String, String)], ids: &[&str], failures: &[(&str, Str
     for (id, why) in failures {
         index.find(id).into_iter().for_each(|label| reason[label] = Some(Some(why)));
     }
-    let mut category_of = Vec::with_capacity(ids.len());
-    for id in ids {
-        let label = index.find(id);
-        label.into_iter().for_each(|label| reason[label] = None);
-        category_of.push(label.map(|label| pairs[label].1.clone()));
-    }
+    let label_of: Vec<_> = ids.iter().map(|id| index.find(id)).collect();
+    label_of.iter().flatten().for_each(|&label| reason[label] = None);
+    let category_of = label_of.iter().map(|label| label.map(|label| pairs[label].1.clone())).collect();
     let lost = pairs.iter().zip(reason).filter_map(|((path, category), reason)| {
         let why = reason?.map(str::to_owned);
         Some(Missing { path: path.clone(), category: category.clone(), why })
     });
-    Assignment { category_of, missing: lost.collect() }
+    Assignment { category_of, label_of, missing: lost.collect() }
 }
 
 /// Labels by path, and by all ends of their paths that are unambiguous.

@@ -35,18 +35,19 @@ pub struct Scores {
 pub const NAMES: [&str; 6] = ["nn", "ft", "st", "e", "dcg", "map"];
 
 impl Scores {
-    /// The measures of a query whose relevant models are at `ranks` (ascending, from 1) of `others` = N - 1.
-    pub fn of(ranks: &[usize], others: usize) -> Self {
+    /// The measures of a query that finds `ranks.len()` of its `relevant` = C models, at `ranks` (ascending, from 1) of
+    /// `others` = N - 1.
+    pub fn of(ranks: &[usize], relevant: usize, others: usize) -> Self {
         let groups = ranks.iter().enumerate().flat_map(|(c, &rank)| {
             let before = if c == 0 { 0 } else { ranks[c - 1] };
             [Group { size: rank - before - 1, relevant: 0 }, Group { size: 1, relevant: 1 }]
         });
-        Self::expected(groups, ranks.len(), others)
+        Self::expected(groups, relevant, others)
     }
 
     /// Expected measures where the models of each group are in random order; `relevant` = C, `others` = N - 1.
     ///
-    /// Groups after the last relevant model may be left out.
+    /// Groups after the last relevant model may be left out, and relevant models that were not found are in none.
     pub fn expected(groups: impl IntoIterator<Item = Group>, relevant: usize, others: usize) -> Self {
         let cuts = [1, relevant, others.min(2 * relevant), others.min(E_CUT)];
         let mut hits = [0.0; 4];
@@ -130,13 +131,13 @@ mod tests {
     #[test]
     fn discounted_gain_counts_the_first_two_ranks_in_full() {
         // rel = [1, 0, 1, 0], C = 2: (1 + 1 / log2 3) / 2
-        assert!((Scores::of(&[1, 3], 4).dcg - 0.815465).abs() < 1e-6);
+        assert!((Scores::of(&[1, 3], 2, 4).dcg - 0.815465).abs() < 1e-6);
     }
 
     #[test]
     fn a_query_worked_by_hand() {
         // C = 2 at ranks 2 and 5 of 6: nothing first, one among 2, one among 4, both among 6
-        let scores = Scores::of(&[2, 5], 6);
+        let scores = Scores::of(&[2, 5], 2, 6);
         assert_eq!((scores.nn, scores.ft, scores.st, scores.e), (0.0, 0.5, 0.5, 0.5));
         assert!(close(scores.dcg, (1.0 + 1.0 / 5f64.log2()) / 2.0));
         assert!(close(scores.ap, (1.0 / 2.0 + 2.0 / 5.0) / 2.0));
@@ -145,14 +146,23 @@ mod tests {
     #[test]
     fn the_second_tier_ends_with_the_gallery() {
         // C = 3 of 4: the second tier would be 6 long
-        assert_eq!(Scores::of(&[2, 3, 4], 4).st, 1.0);
+        assert_eq!(Scores::of(&[2, 3, 4], 3, 4).st, 1.0);
+    }
+
+    #[test]
+    fn relevant_models_that_were_not_found_count_0() {
+        // C = 4, one found, second of 9
+        let scores = Scores::of(&[2], 4, 9);
+        assert_eq!((scores.ft, scores.st, scores.ap), (0.25, 0.25, 0.125));
+        assert!(close(scores.dcg, 1.0 / (2.0 + 1.0 / 3f64.log2() + 0.5)));
+        assert_eq!(Scores::of(&[], 4, 9), Scores::default());
     }
 
     #[test]
     fn the_e_measure_looks_at_32_and_may_find_nothing() {
-        assert_eq!(Scores::of(&[33], 96).e, 0.0);
-        assert!(close(Scores::of(&[32], 96).e, 2.0 / 33.0));
-        assert!(close(Scores::of(&(1..=21).collect::<Vec<_>>(), 96).e, 42.0 / 53.0));
+        assert_eq!(Scores::of(&[33], 1, 96).e, 0.0);
+        assert!(close(Scores::of(&[32], 1, 96).e, 2.0 / 33.0));
+        assert!(close(Scores::of(&(1..=21).collect::<Vec<_>>(), 21, 96).e, 42.0 / 53.0));
     }
 
     /// All 0/1 sequences of `n` places with `c` ones, as the ranks of the ones.
@@ -164,7 +174,7 @@ mod tests {
     #[test]
     fn chance_is_the_mean_over_all_rankings() {
         for (n, c) in [(1, 1), (5, 2), (7, 3), (8, 7), (9, 1), (10, 4)] {
-            let all: Vec<_> = subsets(n, c).iter().map(|ranks| Scores::of(ranks, n)).collect();
+            let all: Vec<_> = subsets(n, c).iter().map(|ranks| Scores::of(ranks, c, n)).collect();
             let expected = Scores::expected([Group { size: n, relevant: c }], c, n);
             for (mean, formula) in Scores::mean(&all).values().iter().zip(expected.values()) {
                 assert!(close(*mean, formula), "{n} {c}: {mean} {formula}");
@@ -178,7 +188,7 @@ mod tests {
         let all: Vec<_> = subsets(4, 2)
             .iter()
             .map(|tied| {
-                Scores::of(&[&[1], tied.iter().map(|r| r + 1).collect::<Vec<_>>().as_slice(), &[6]].concat(), 6)
+                Scores::of(&[&[1], tied.iter().map(|r| r + 1).collect::<Vec<_>>().as_slice(), &[6]].concat(), 4, 6)
             })
             .collect();
         let groups = [(1, 1), (4, 2), (1, 1)].map(|(size, relevant)| Group { size, relevant });
@@ -192,7 +202,7 @@ mod tests {
         fn measures_stay_between_0_and_1(bits in proptest::collection::vec(any::<bool>(), 1..80)) {
             let ranks: Vec<_> = (1..=bits.len()).filter(|r| bits[r - 1]).collect();
             prop_assume!(!ranks.is_empty());
-            for value in Scores::of(&ranks, bits.len()).values() {
+            for value in Scores::of(&ranks, ranks.len(), bits.len()).values() {
                 prop_assert!((0.0..=1.0 + 1e-12).contains(&value));
             }
         }

@@ -1,10 +1,11 @@
 //! How well descriptors retrieve: rankings, measures, significance, and the files and report that tell them.
 //!
-//! In: a store (or anybody's distance matrix) and labels. Out: an [`Evaluation`] and the files of [`write`].
+//! In: a store, distance matrices and runs of others, and labels. Out: an [`Evaluation`] and the files of [`report()`].
 //! Method: every labelled model whose class has another member is a query against all other labelled models.
 //! The measures are the Princeton Shape Benchmark's (Shilane, Min, Kazhdan, Funkhouser 2004) and TREC's average
 //! precision; each is told in [`measures`] and [`precision_recall`], the tests in [`significance`].
-//! Cost: N^2 distances and N sorts for each method, in parallel, in memory for a few rows only.
+//! Cost: N^2 distances and N sorts for each method, once, in parallel, in memory for a few rows only: what is scored is
+//! written in the same pass.
 //! Does not promise: a verdict on models that failed to be read; they are counted as missing, not as misses.
 
 pub mod chance;
@@ -12,6 +13,7 @@ pub mod formats;
 pub mod gallery;
 pub mod labels;
 pub mod measures;
+pub mod output;
 pub mod precision_recall;
 pub mod ranking;
 pub mod report;
@@ -22,12 +24,15 @@ pub mod summary;
 pub use gallery::Gallery;
 pub use labels::Labels;
 pub use ranking::{Entrant, QueryResult};
-pub use source::{Coverage, evaluate, evaluate_matrices, report_matrices, write};
+pub use source::{Coverage, Input, Named, evaluate, judgements, report};
 
 pub use summary::Summary;
 
-use crate::error::Result;
+use crate::error::{Result, RunError};
+use formats::results::Results;
 use significance::Comparison;
+use std::collections::BTreeSet;
+use std::path::Path;
 
 /// What `eval` may be asked.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -78,15 +83,19 @@ pub struct Evaluation {
     pub options: Options,
 }
 
-/// Scores `entrants`, each a distance on the models of `gallery`.
+/// Scores `entrants`, each a distance on the models of `gallery`, and writes their matrices and runs into `out`.
 ///
 /// # Errors
-/// A distance that is not a number; a gallery without a single query.
-pub fn score(gallery: Gallery, entrants: &[Entrant], options: &Options) -> Result<Evaluation> {
+/// A distance that is not a number; a gallery without a single query; two methods of one name; a file that cannot be
+/// read or written.
+pub fn score(gallery: Gallery, entrants: &[Entrant], options: &Options, out: Option<&Path>) -> Result<Evaluation> {
     gallery.require_queries()?;
+    check_names(entrants)?;
     let mut methods = Vec::with_capacity(entrants.len());
     for entrant in entrants {
-        let queries = ranking::run(&gallery, entrant, options.hits)?;
+        let mut results = out.map(|out| Results::create(out, &entrant.name, &gallery)).transpose()?;
+        let queries = ranking::run(&gallery, entrant, options.hits, results.as_mut())?;
+        results.map_or(Ok(()), Results::finish)?;
         let summary = Summary::of(&gallery, queries.iter().map(|q| (q.query, &q.scores, &q.curves)));
         methods.push(MethodResult { name: entrant.name.clone(), queries, summary });
     }
@@ -97,22 +106,39 @@ pub fn score(gallery: Gallery, entrants: &[Entrant], options: &Options) -> Resul
     Ok(Evaluation { gallery, coverage, methods, chance, ceiling, comparisons, options: options.clone() })
 }
 
+/// Names are told apart in files too.
+fn check_names(entrants: &[Entrant]) -> Result<()> {
+    let mut names = BTreeSet::from(["chance".to_owned(), "ceiling".to_owned()]);
+    match entrants.iter().find(|entrant| !names.insert(formats::file_name(&entrant.name))) {
+        Some(entrant) => Err(RunError::Usage(format!("there are two methods {}; give one another name", entrant.name))),
+        None if entrants.is_empty() => Err(RunError::Usage("there is no method to evaluate".into())),
+        None => Ok(()),
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::gallery::tests::gallery;
+    use super::ranking::tests::on_a_line;
     use super::*;
 
     /// Two classes of three on a line, found by their places ("good") and by the order of their names ("bad").
     pub(crate) fn toy() -> Evaluation {
         let places = [0.0, 1.0, 2.0, 10.0, 11.0, 12.0];
         let mixed = [0.0, 10.0, 20.0, 1.0, 11.0, 21.0];
-        let on = |places: [f64; 6]| Box::new(move |a: usize, b: usize| (places[a] - places[b]).abs());
-        let entrants = [
-            Entrant { name: "good".into(), distance: on(places) },
-            Entrant { name: "bad".into(), distance: on(mixed) },
-        ];
+        let entrants = [on_a_line("good", places.to_vec()), on_a_line("bad", mixed.to_vec())];
         let options = Options { resamples: 200, ..Options::default() };
-        score(gallery(&["a", "a", "a", "b", "b", "b"]), &entrants, &options).unwrap()
+        score(gallery(&["a", "a", "a", "b", "b", "b"]), &entrants, &options, None).unwrap()
+    }
+
+    #[test]
+    fn names_must_differ_in_files_too() {
+        let gallery = || gallery(&["a", "a"]);
+        let entrant = |name| on_a_line(name, vec![0.0, 1.0]);
+        for names in [&["x", "x"][..], &["x:y", "x-y"], &["chance"], &[]] {
+            let entrants: Vec<_> = names.iter().map(|name| entrant(name)).collect();
+            assert!(score(gallery(), &entrants, &Options::default(), None).is_err(), "{names:?}");
+        }
     }
 
     #[test]

@@ -15,9 +15,11 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// The curves of a query whose relevant models are at `ranks` (ascending, from 1, at least one).
-    pub fn of(ranks: &[usize]) -> Self {
-        let precisions: Vec<_> = ranks.iter().enumerate().map(|(c, &rank)| (c + 1) as f64 / rank as f64).collect();
+    /// The curves of a query that finds its `relevant` models (at least one) at `ranks` (ascending, from 1); the
+    /// precision at those that are not among them is 0.
+    pub fn of(ranks: &[usize], relevant: usize) -> Self {
+        let mut precisions: Vec<_> = ranks.iter().enumerate().map(|(c, &rank)| (c + 1) as f64 / rank as f64).collect();
+        precisions.resize(relevant, 0.0);
         Self { pr11: interpolated(&precisions), pr20: princeton(&precisions) }
     }
 }
@@ -95,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_princeton_curve_of_a_class_of_six() {
-        let curves = Curves::of(&[1, 4, 10, 41, 44]);
+        let curves = Curves::of(&[1, 4, 10, 41, 44], 5);
         let expected = [(0.2, 1.0), (0.4, 0.5), (0.6, 0.3), (0.8, 0.097561), (1.0, 0.113636)];
         for (recall, precision) in expected {
             let level = (recall * 20.0 + 0.5) as usize - 1;
@@ -109,24 +111,24 @@ mod tests {
     #[test]
     fn interpolation_takes_the_best_precision_further_on() {
         // hits at 2, 3 of C = 2: precisions 1/2 and 2/3
-        assert_eq!(Curves::of(&[2, 3]).pr11, [2.0 / 3.0; 11]);
+        assert_eq!(Curves::of(&[2, 3], 2).pr11, [2.0 / 3.0; 11]);
         // recall of the first hit is exactly 0.5: it still counts at 0.5
-        let curves = Curves::of(&[1, 4]);
+        let curves = Curves::of(&[1, 4], 2);
         assert_eq!((curves.pr11[5], curves.pr11[6]), (1.0, 0.5));
     }
 
     #[test]
     fn a_level_counts_from_the_first_hit_on() {
         // C = 3: 1 / 3 lies between 0.30 and 0.35
-        let curves = Curves::of(&[1, 2, 3]);
+        let curves = Curves::of(&[1, 2, 3], 3);
         assert_eq!((curves.pr20[5], curves.pr20[6]), (None, Some(1.0)));
         // C = 20: the first level is the first hit
-        assert_eq!(Curves::of(&(1..=20).collect::<Vec<_>>()).pr20, [Some(1.0); 20]);
+        assert_eq!(Curves::of(&(1..=20).collect::<Vec<_>>(), 20).pr20, [Some(1.0); 20]);
     }
 
     #[test]
     fn means_are_over_the_queries_that_count() {
-        let mean = MeanCurves::of(&[Curves::of(&[1]), Curves::of(&[2, 4])]);
+        let mean = MeanCurves::of(&[Curves::of(&[1], 1), Curves::of(&[2, 4], 2)]);
         assert_eq!(mean.pr20[18], Some(0.5), "0.95: only the class of three");
         assert_eq!(mean.pr20[19], Some(0.75));
         assert_eq!(mean.pr20[0], None);

@@ -1,5 +1,6 @@
-//! Rankings: all distances of a query, in order.
+//! Rankings: all distances of a query, in order, in one pass that scores them and writes them down.
 
+use super::formats::results::Results;
 use super::gallery::Gallery;
 use super::measures::{Group, Scores};
 use super::precision_recall::Curves;
@@ -11,10 +12,46 @@ const BLOCK: usize = 16;
 /// Models compared with a block of queries at a time: 256 descriptors of 96 f32 are 96 KiB.
 const TILE: usize = 256;
 
-/// A distance to be evaluated: from model to model of a gallery (places in it), smaller is more alike.
+/// Distances between the models of a gallery (places in it), smaller is more alike. An infinite one means that the
+/// model was not found at all: it has no rank, and what is relevant among such models counts as missed.
+pub trait Distances: Sync {
+    /// The distances of each of `queries` to all models.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    fn rows(&self, queries: &[usize]) -> Result<Vec<Vec<f64>>>;
+}
+
+/// Distances that are computed pair by pair.
+struct Pairs<F> {
+    models: usize,
+    distance: F,
+}
+
+impl<F: Fn(usize, usize) -> f64 + Sync> Distances for Pairs<F> {
+    fn rows(&self, queries: &[usize]) -> Result<Vec<Vec<f64>>> {
+        let mut rows = vec![vec![0.0; self.models]; queries.len()];
+        for start in (0..self.models).step_by(TILE) {
+            let tile = start..self.models.min(start + TILE);
+            for (row, &query) in rows.iter_mut().zip(queries) {
+                tile.clone().for_each(|model| row[model] = (self.distance)(query, model));
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// What is evaluated: a method's name and its distances.
 pub struct Entrant<'a> {
     pub name: String,
-    pub distance: Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>,
+    pub distances: Box<dyn Distances + 'a>,
+}
+
+impl<'a> Entrant<'a> {
+    /// An entrant on `models` models that computes each distance.
+    pub fn of_pairs(name: &str, models: usize, distance: impl Fn(usize, usize) -> f64 + Sync + 'a) -> Self {
+        Self { name: name.to_owned(), distances: Box::new(Pairs { models, distance }) }
+    }
 }
 
 /// One query's results.
@@ -30,104 +67,110 @@ pub struct QueryResult {
     pub hits: Vec<(usize, f64)>,
 }
 
-/// Ranks and scores all queries of `gallery` by `entrant`, keeping `hits` of each; in the gallery's order.
+/// What the pass leaves of one model: its result, if it is a query, and what is written of it.
+struct Visited {
+    result: Option<QueryResult>,
+    row: Vec<u8>,
+    lines: String,
+}
+
+/// Ranks and scores all queries of `gallery` by `entrant`, keeping `hits` of each; in the gallery's order. The rows of
+/// distances and the rankings go to `results`, a few blocks in memory at a time.
 ///
 /// # Errors
-/// A distance that is not a number.
-pub fn run(gallery: &Gallery, entrant: &Entrant, hits: usize) -> Result<Vec<QueryResult>> {
-    let queries = gallery.queries();
-    let blocks: Result<Vec<Vec<_>>> = queries
-        .par_chunks(BLOCK)
-        .map(|block| {
-            let rows = rows(gallery.len(), entrant, block);
-            block.iter().zip(&rows).map(|(&query, row)| score(gallery, query, row, hits)).collect()
-        })
-        .collect();
-    Ok(blocks?.concat())
-}
-
-/// The distances of each query of a block to all `n` models, tile by tile.
-pub fn rows(n: usize, entrant: &Entrant, block: &[usize]) -> Vec<Vec<f64>> {
-    let mut rows = vec![vec![0.0; n]; block.len()];
-    for start in (0..n).step_by(TILE) {
-        for (row, &query) in rows.iter_mut().zip(block) {
-            let end = n.min(start + TILE);
-            (start..end).for_each(|model| row[model] = (entrant.distance)(query, model));
+/// A distance that is not a number; a file that cannot be read or written.
+pub fn run(
+    gallery: &Gallery,
+    entrant: &Entrant,
+    hits: usize,
+    mut results: Option<&mut Results>,
+) -> Result<Vec<QueryResult>> {
+    let models = if results.is_some() { (0..gallery.len()).collect() } else { gallery.queries() };
+    let mut scored = Vec::with_capacity(models.len());
+    let form = results.as_ref().map(|results| results.form());
+    for wave in models.chunks(BLOCK * rayon::current_num_threads()) {
+        let visit = |block: &[usize]| -> Result<Vec<Visited>> {
+            let rows = entrant.distances.rows(block)?;
+            let visit = |(&model, row): (&usize, &Vec<f64>)| {
+                check(gallery, entrant, model, row)?;
+                let order = if gallery.class(model).queried { rank(gallery, model, row) } else { Vec::new() };
+                let result = gallery.class(model).queried.then(|| score(gallery, model, row, &order, hits));
+                let (row, lines) =
+                    form.as_ref().map(|form| (form.row(row), form.lines(gallery, model, &order))).unwrap_or_default();
+                Ok(Visited { result, row, lines })
+            };
+            block.iter().zip(&rows).map(visit).collect()
+        };
+        let blocks: Vec<_> = wave.par_chunks(BLOCK).map(visit).collect::<Result<_>>()?;
+        for visited in blocks.into_iter().flatten() {
+            results.as_mut().map_or(Ok(()), |results| results.write(&visited.row, &visited.lines))?;
+            scored.extend(visited.result);
         }
     }
-    rows
+    Ok(scored)
 }
 
-/// All rows of distances in order, a few blocks in memory at a time.
-pub fn each_row(n: usize, entrant: &Entrant, mut visit: impl FnMut(usize, &[f64]) -> Result<()>) -> Result<()> {
-    let all: Vec<_> = (0..n).collect();
-    for wave in all.chunks(BLOCK * rayon::current_num_threads()) {
-        let blocks: Vec<_> = wave.par_chunks(BLOCK).map(|block| rows(n, entrant, block)).collect();
-        for (&query, row) in wave.iter().zip(blocks.iter().flatten()) {
-            visit(query, row)?;
+fn check(gallery: &Gallery, entrant: &Entrant, model: usize, row: &[f64]) -> Result<()> {
+    match row.iter().position(|distance| distance.is_nan()) {
+        Some(bad) => {
+            let (name, a, b) = (&entrant.name, &gallery.ids[model], &gallery.ids[bad]);
+            Err(RunError::Usage(format!("{name}: the distance between {a} and {b} is not a number")))
         }
+        None => Ok(()),
     }
-    Ok(())
 }
 
-/// All other models in the order of their distance from `query`, ties in the byte order of their ids.
-///
-/// # Errors
-/// A distance that is not a number.
-pub fn rank(gallery: &Gallery, query: usize, row: &[f64]) -> Result<Vec<usize>> {
-    let others = || (0..row.len()).filter(|&model| model != query);
-    if let Some(bad) = others().find(|&model| row[model].is_nan()) {
-        let (a, b) = (&gallery.ids[query], &gallery.ids[bad]);
-        return Err(RunError::Usage(format!("the distance between {a} and {b} is not a number")));
-    }
-    let mut order: Vec<_> = others().collect();
+/// All other models that were found, in the order of their distance from `query` (numbers, all of them), ties in the
+/// byte order of their ids.
+pub fn rank(gallery: &Gallery, query: usize, row: &[f64]) -> Vec<usize> {
+    let found = |&model: &usize| model != query && row[model] < f64::INFINITY;
+    let mut order: Vec<_> = (0..row.len()).filter(found).collect();
     order.sort_unstable_by(|&a, &b| {
-        let by_distance = row[a].partial_cmp(&row[b]).expect("NaN was refused above");
+        let by_distance = row[a].partial_cmp(&row[b]).unwrap_or(std::cmp::Ordering::Equal);
         by_distance.then_with(|| gallery.id_order[a].cmp(&gallery.id_order[b]))
     });
-    Ok(order)
+    order
 }
 
-fn score(gallery: &Gallery, query: usize, row: &[f64], hits: usize) -> Result<QueryResult> {
-    let order = rank(gallery, query, row)?;
-    let relevant = |model: usize| gallery.class_of[model] == gallery.class_of[query];
-    let ranks: Vec<_> = (1..=order.len()).filter(|r| relevant(order[r - 1])).collect();
+fn score(gallery: &Gallery, query: usize, row: &[f64], order: &[usize], hits: usize) -> QueryResult {
+    let (relevant, others) = (gallery.class(query).relevant(), gallery.len() - 1);
+    let is_relevant = |model: usize| gallery.class_of[model] == gallery.class_of[query];
+    let ranks: Vec<_> = (1..=order.len()).filter(|r| is_relevant(order[r - 1])).collect();
     let groups = order
         .chunk_by(|&a, &b| row[a] == row[b])
-        .map(|tied| Group { size: tied.len(), relevant: tied.iter().filter(|&&model| relevant(model)).count() });
+        .map(|tied| Group { size: tied.len(), relevant: tied.iter().filter(|&&model| is_relevant(model)).count() });
     let matters = |group: &Group| group.relevant > 0 && group.relevant < group.size;
     let expected = groups.clone().any(|group| matters(&group));
-    Ok(QueryResult {
+    QueryResult {
         query,
-        scores: Scores::of(&ranks, order.len()),
-        expected: expected.then(|| Scores::expected(groups, ranks.len(), order.len())),
-        curves: Curves::of(&ranks),
+        scores: Scores::of(&ranks, relevant, others),
+        expected: expected.then(|| Scores::expected(groups, relevant, others)),
+        curves: Curves::of(&ranks, relevant),
         hits: order.iter().take(hits).map(|&model| (model, row[model])).collect(),
-    })
+    }
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::super::gallery::tests::gallery;
     use super::*;
 
     /// Models on a line, compared by how far apart they are.
-    fn on_a_line(places: &[f64]) -> Entrant<'_> {
-        Entrant { name: "line".into(), distance: Box::new(|a, b| (places[a] - places[b]).abs()) }
+    pub(crate) fn on_a_line(name: &str, places: Vec<f64>) -> Entrant<'static> {
+        Entrant::of_pairs(name, places.len(), move |a, b| (places[a] - places[b]).abs())
     }
 
     #[test]
     fn a_query_is_not_in_its_own_list() {
         let gallery = gallery(&["a", "a", "b"]);
-        assert_eq!(rank(&gallery, 0, &[0.0, 2.0, 1.0]).unwrap(), [2, 1]);
+        assert_eq!(rank(&gallery, 0, &[0.0, 2.0, 1.0]), [2, 1]);
     }
 
     #[test]
     fn ties_go_by_id_and_their_expectation_is_told() {
         // query m0000 of class a: m0001 (a), m0002 (b), m0003 (b) all at distance 1
         let gallery = gallery(&["a", "a", "b", "b"]);
-        let entrant = on_a_line(&[0.0, 1.0, 1.0, -1.0]);
-        let results = run(&gallery, &entrant, 3).unwrap();
+        let results = run(&gallery, &on_a_line("line", vec![0.0, 1.0, 1.0, -1.0]), 3, None).unwrap();
         assert_eq!(results[0].hits, [(1, 1.0), (2, 1.0), (3, 1.0)]);
         assert_eq!(results[0].scores.nn, 1.0);
         let expected = results[0].expected.unwrap();
@@ -141,29 +184,37 @@ mod tests {
     #[test]
     fn ties_among_equally_relevant_models_change_nothing() {
         let gallery = gallery(&["a", "a", "a", "b"]);
-        let results = run(&gallery, &on_a_line(&[0.0, 1.0, -1.0, 5.0]), 3).unwrap();
+        let results = run(&gallery, &on_a_line("line", vec![0.0, 1.0, -1.0, 5.0]), 3, None).unwrap();
         assert!(results[0].expected.is_none());
     }
 
     #[test]
     fn a_distance_that_is_not_a_number_is_an_error() {
         let gallery = gallery(&["a", "a", "b"]);
-        let entrant = Entrant { name: "nan".into(), distance: Box::new(|_, _| f64::NAN) };
-        assert!(run(&gallery, &entrant, 3).is_err());
+        let error = run(&gallery, &Entrant::of_pairs("odd", 3, |_, _| f64::NAN), 3, None).unwrap_err();
+        assert!(error.to_string().contains("odd: the distance between m0000 and m0000"), "{error}");
+    }
+
+    #[test]
+    fn what_was_not_found_counts_as_missed() {
+        // the query m0000 finds m0003 (b), then m0001 (a), and never m0002 (a)
+        let gallery = gallery(&["a", "a", "a", "b"]);
+        let row = [0.0, 2.0, f64::INFINITY, 1.0];
+        let entrant = Entrant::of_pairs("some", 4, move |a, b| if a == 0 { row[b] } else { 0.0 });
+        let result = &run(&gallery, &entrant, 9, None).unwrap()[0];
+        assert_eq!(result.hits, [(3, 1.0), (1, 2.0)]);
+        assert_eq!((result.scores.ap, result.scores.ft, result.scores.st), (0.25, 0.5, 0.5));
+        assert_eq!((result.curves.pr11[5], result.curves.pr11[6]), (0.5, 0.0));
+        assert_eq!((result.curves.pr20[9], result.curves.pr20[19]), (Some(0.5), Some(0.0)));
     }
 
     #[test]
     fn rows_come_in_order_whatever_the_blocks() {
         let places: Vec<_> = (0..600).map(f64::from).collect();
-        let entrant = on_a_line(&places);
-        let mut next = 0;
-        let visit = |query: usize, row: &[f64]| {
-            assert_eq!(query, next);
-            assert_eq!((row[0], row[599]), (query as f64, 599.0 - query as f64));
-            next += 1;
-            Ok(())
-        };
-        each_row(600, &entrant, visit).unwrap();
-        assert_eq!(next, 600);
+        let gallery = gallery(&["a"; 600]);
+        let results = run(&gallery, &on_a_line("line", places.clone()), 1, None).unwrap();
+        assert!(results.iter().enumerate().all(|(i, result)| result.query == i));
+        let rows = on_a_line("line", places).distances.rows(&[7, 3]).unwrap();
+        assert_eq!((rows[0][0], rows[0][599], rows[1][300]), (7.0, 592.0, 297.0));
     }
 }

@@ -62,7 +62,7 @@ mod tests {
         let gallery = gallery(&["a", "a", "b", "b", "b"]);
         // both of a found first, none of b
         let ranks = [vec![1], vec![1], vec![3, 4], vec![3, 4], vec![3, 4]];
-        let results: Vec<_> = ranks.iter().map(|r| (Scores::of(r, 4), Curves::of(r))).collect();
+        let results: Vec<_> = ranks.iter().map(|r| (Scores::of(r, r.len(), 4), Curves::of(r, r.len()))).collect();
         let summary = Summary::of(&gallery, results.iter().enumerate().map(|(i, (s, c))| (i, s, c)));
         assert_eq!((summary.micro.nn, summary.macros.nn), (0.4, 0.5));
         assert_eq!(summary.classes[1].scores.ft, 0.0);

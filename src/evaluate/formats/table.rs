@@ -33,7 +33,8 @@ pub fn rows(evaluation: &Evaluation) -> Vec<(&str, &Summary)> {
 }
 
 /// Writes one line for each method and query: its measures, their expected values over random tie breaks
-/// (`<measure>_expected`, the same where ties make no difference), and its nearest neighbour.
+/// (`<measure>_expected`, the same where ties make no difference), its nearest neighbour, and the interpolated precision at
+/// recall 0, 0.1 .. 1.
 pub fn write_queries(evaluation: &Evaluation, out: &mut dyn Write) -> std::io::Result<()> {
     let mut table = csv::Writer::from_writer(out);
     let names = NAMES.map(|name| if name == "map" { "ap" } else { name });
@@ -41,6 +42,7 @@ pub fn write_queries(evaluation: &Evaluation, out: &mut dyn Write) -> std::io::R
     header.extend(names.map(str::to_owned));
     header.extend(names.map(|name| format!("{name}_expected")));
     header.extend(["nearest", "nearest_class", "nearest_distance"].map(str::to_owned));
+    header.extend((0..INTERPOLATED).map(|level| format!("p({:.1})", level as f64 / (INTERPOLATED - 1) as f64)));
     table.write_record(header)?;
     let gallery = &evaluation.gallery;
     for (method, result) in evaluation.methods.iter().flat_map(|m| m.queries.iter().map(move |query| (m, query))) {
@@ -53,6 +55,7 @@ pub fn write_queries(evaluation: &Evaluation, out: &mut dyn Write) -> std::io::R
             .first()
             .map(|&(hit, distance)| [gallery.ids[hit].clone(), gallery.class(hit).name.clone(), distance.to_string()]);
         record.extend(nearest.unwrap_or_default());
+        record.extend(result.curves.pr11.map(|precision| precision.to_string()));
         table.write_record(record)?;
     }
     table.flush()
@@ -83,6 +86,10 @@ mod tests {
         let text = text(write_queries);
         assert_eq!(text.lines().count(), 1 + 2 * 6);
         let first = text.lines().nth(1).unwrap();
-        assert!(first.starts_with("good,m0000,a,1,1,1,") && first.ends_with(",m0001,a,1"), "{first}");
+        assert!(first.starts_with("good,m0000,a,1,1,1,"), "{first}");
+        assert!(first.ends_with(&format!(",m0001,a,1{}", ",1".repeat(11))), "{first}");
+        assert!(text.lines().next().unwrap().ends_with(
+            "nearest_distance,p(0.0),p(0.1),p(0.2),p(0.3),p(0.4),p(0.5),p(0.6),p(0.7),p(0.8),p(0.9),p(1.0)"
+        ));
     }
 }

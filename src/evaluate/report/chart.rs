@@ -4,12 +4,27 @@ use super::super::Evaluation;
 use super::super::formats::table;
 use super::super::precision_recall::{INTERPOLATED, PRINCETON};
 use super::super::source::is_phase;
+use crate::search::Name;
 use kuva::backend::raster::RasterBackend;
 use kuva::prelude::{Layout, LegendPosition, LinePlot, LineStyle, Plot, SvgBackend, Theme, render_multiple};
 use serde::Serialize;
 
-/// Colours of the frames, told apart by people with any colour vision (Okabe and Ito 2008, without yellow).
-const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7f7f7f"];
+/// Colours of the frames, on light and on dark ground; the first are told apart by people with any colour vision (after
+/// Okabe and Ito 2008).
+const COLOURS: [[&str; 2]; 10] = [
+    ["#0072b2", "#4db2f0"],
+    ["#d55e00", "#ff8a3d"],
+    ["#009e73", "#2fcf9f"],
+    ["#c0569a", "#e596c6"],
+    ["#444444", "#d0d0d0"],
+    ["#e69f00", "#ffc44d"],
+    ["#56b4e9", "#a5dcff"],
+    ["#8c564b", "#c79388"],
+    ["#7b4bb7", "#b694ea"],
+    ["#6f8f00", "#b5d33d"],
+];
+/// What a page shows before anything is chosen: the method and the frames it is compared with in the field.
+const FIRST: [&str; 4] = ["symmetry", "pca", "cpca", "npca"];
 /// Long enough to be seen between the round ends of thick lines.
 const DASH: &str = "9 7";
 /// The colour of the random ranking.
@@ -18,12 +33,18 @@ const CHANCE: &str = "#888888";
 /// A method as the page shows it: phases are dashed, in the colour of their frame's magnitudes.
 pub struct Style<'a> {
     pub name: &'a str,
-    pub colour: &'static str,
+    /// On light and on dark ground.
+    pub colours: [&'static str; 2],
     pub dashed: bool,
+    /// Whether the page shows it before anything is chosen.
+    pub shown: bool,
 }
 
-/// The styles of all methods, in order.
+/// The styles of all methods, in order. Shown at first are those of [`FIRST`] and the results of others; all, where
+/// there are none of these.
 pub fn styles(evaluation: &Evaluation) -> Vec<Style<'_>> {
+    let first = |name: &str| FIRST.contains(&name) || name.parse::<Name>().is_err();
+    let some = evaluation.methods.iter().any(|method| first(&method.name));
     let frame =
         |name: &'_ str| if is_phase(name) { name.trim_end_matches(":phase").to_owned() } else { name.to_owned() };
     let mut frames: Vec<String> = Vec::new();
@@ -32,7 +53,8 @@ pub fn styles(evaluation: &Evaluation) -> Vec<Style<'_>> {
             frames.push(frame(name));
             frames.len() - 1
         });
-        Style { name, colour: COLOURS[place % COLOURS.len()], dashed: is_phase(name) }
+        let shown = !some || first(name);
+        Style { name, colours: COLOURS[place % COLOURS.len()], dashed: is_phase(name), shown }
     };
     evaluation.methods.iter().map(|method| method.name.as_str()).map(style).collect()
 }
@@ -94,7 +116,7 @@ fn lines(
     legend: bool,
 ) -> Vec<Plot> {
     let mut styles = styles(evaluation);
-    styles.push(Style { name: "chance", colour: CHANCE, dashed: false });
+    styles.push(Style { name: "chance", colours: [CHANCE; 2], dashed: false, shown: true });
     let line = |(place, (style, series)): (usize, (&Style, &Vec<Option<f64>>))| {
         let points = numbers.recall.iter().zip(series).filter_map(|(&recall, p)| p.map(|p| (recall, p)));
         let dash = match (style.name, style.dashed) {
@@ -102,7 +124,7 @@ fn lines(
             (_, true) => LineStyle::Custom(DASH.into()),
             (_, false) => LineStyle::Solid,
         };
-        let line = LinePlot::new().with_data(points).with_color(colour(place, style.colour)).with_line_style(dash);
+        let line = LinePlot::new().with_data(points).with_color(colour(place, style.colours[0])).with_line_style(dash);
         let line = line.with_stroke_width(2.2);
         Plot::Line(if legend { line.with_legend(style.name) } else { line })
     };
@@ -172,6 +194,11 @@ mod tests {
         }
         assert!(svg.contains(">Recall<") && svg.contains(">Precision<"));
         assert!(curves[1].numbers.starts_with("{\"recall\":[0.05,0.1,"));
+    }
+
+    #[test]
+    fn results_of_others_are_shown_at_first() {
+        assert!(styles(&toy()).iter().all(|style| style.shown), "no frame of ours");
     }
 
     #[test]

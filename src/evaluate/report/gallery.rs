@@ -1,15 +1,18 @@
 //! The pictures of queries and their hits, as data for the page's script.
 
-use super::super::Evaluation;
+use super::super::{Evaluation, MethodResult};
 use crate::error::Result;
 use crate::search::picture::{data_uri, grey_png};
 use crate::search::{Rows, in_words};
-use crate::store::{Store, THUMBNAIL};
+use crate::stages::projection_sweep::Source;
+use crate::store::{Store, Summary, THUMBNAIL};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Queries in the gallery at most, evenly spread: their pictures make up most of the page's size.
+/// Queries in the gallery at most.
 const QUERIES: usize = 600;
+/// Models pictured at most: at 2 to 3 kB each they make up most of the page's size.
+const PICTURES: usize = 1_500;
 
 /// What the script needs.
 #[derive(Serialize)]
@@ -26,6 +29,7 @@ struct Model {
     class: String,
     picture: String,
     symmetry: String,
+    plane: String,
 }
 
 #[derive(Serialize)]
@@ -35,38 +39,32 @@ struct Hits {
     queries: Vec<(f64, Vec<Hit>)>,
 }
 
-/// Place in `models`, distance, and the distances of the three views.
-type Hit = (usize, f64, [f64; 3]);
+/// Place in `models`, distance, and where they are known the distances of the three views.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Hit {
+    Views(usize, f64, f64, f64, f64),
+    Whole(usize, f64),
+}
 
 impl Gallery {
-    /// The gallery of an evaluation of `store`.
+    /// The gallery of an evaluation of `store`: queries evenly spread, as many as [`QUERIES`] and [`PICTURES`] allow.
     ///
     /// # Errors
     /// A damaged store.
     pub fn new(evaluation: &Evaluation, store: &Store) -> Result<Self> {
         let total = evaluation.methods.first().map_or(0, |method| method.queries.len());
-        let kept = total.min(QUERIES);
-        let chosen: Vec<_> = (0..kept).map(|i| i * total / kept).collect();
-        let mut places = Places::default();
-        let queries = match evaluation.methods.first() {
-            Some(method) => chosen.iter().map(|&i| places.of(method.queries[i].query)).collect(),
-            None => Vec::new(),
-        };
-        let mut methods = Vec::new();
-        for method in &evaluation.methods {
-            let rows = method.name.parse().ok().map(|name| Rows::of(store, name)).transpose()?;
-            let row = |model: usize| rows.map(|rows| rows.row(evaluation.gallery.rows[model]));
-            let views = |a: usize, b: usize| rows.zip(row(a)).zip(row(b)).map(|((rows, a), b)| rows.views(a, b));
-            let mut hits = |query: &super::super::QueryResult| {
-                let hit = |&(model, distance): &(usize, f64)| {
-                    let views = views(query.query, model).unwrap_or_default();
-                    (places.of(model), rounded(distance), views.map(rounded))
-                };
-                (rounded(query.scores.ap), query.hits.iter().map(hit).collect())
-            };
-            let queries = chosen.iter().map(|&i| hits(&method.queries[i])).collect();
-            methods.push(Hits { name: method.name.clone(), queries });
+        let mut kept = total.min(QUERIES);
+        let mut chosen = spread(total, kept);
+        let mut places = Places::of(evaluation, &chosen);
+        while places.models.len() > PICTURES && kept > 1 {
+            kept = kept * 3 / 4;
+            chosen = spread(total, kept);
+            places = Places::of(evaluation, &chosen);
         }
+        let queries = chosen.iter().map(|&i| places.place_of[&evaluation.methods[0].queries[i].query]).collect();
+        let hits = |method| hits(evaluation, store, method, &chosen, &places);
+        let methods = evaluation.methods.iter().map(hits).collect::<Result<_>>()?;
         let models = places.models.iter().map(|&model| shown(evaluation, store, model)).collect::<Result<_>>()?;
         Ok(Self { models, queries, methods })
     }
@@ -83,7 +81,12 @@ impl Gallery {
     }
 }
 
-/// Models in the order in which they were first needed.
+/// `kept` of `total` places, evenly spread.
+fn spread(total: usize, kept: usize) -> Vec<usize> {
+    (0..kept).map(|i| i * total / kept).collect()
+}
+
+/// Models in the order in which they are first needed.
 #[derive(Default)]
 struct Places {
     models: Vec<usize>,
@@ -91,25 +94,77 @@ struct Places {
 }
 
 impl Places {
-    fn of(&mut self, model: usize) -> usize {
-        *self.place_of.entry(model).or_insert_with(|| {
-            self.models.push(model);
-            self.models.len() - 1
-        })
+    /// The chosen queries, then their hits by all methods.
+    fn of(evaluation: &Evaluation, chosen: &[usize]) -> Self {
+        let mut places = Self::default();
+        let results = || evaluation.methods.iter().flat_map(|m| chosen.iter().map(|&i| &m.queries[i]));
+        results().for_each(|result| places.add(result.query));
+        results().flat_map(|result| &result.hits).for_each(|hit| places.add(hit.0));
+        places
     }
+
+    fn add(&mut self, model: usize) {
+        let next = self.models.len();
+        if *self.place_of.entry(model).or_insert(next) == next {
+            self.models.push(model);
+        }
+    }
+}
+
+fn hits(
+    evaluation: &Evaluation,
+    store: &Store,
+    method: &MethodResult,
+    chosen: &[usize],
+    places: &Places,
+) -> Result<Hits> {
+    let rows = method.name.parse().ok().map(|name| Rows::of(store, name)).transpose()?;
+    let row = |rows: Rows<'_>, model: usize| rows.row(evaluation.gallery.rows[model]).to_vec();
+    let hit = |query: usize, &(model, distance): &(usize, f64)| {
+        let (place, distance) = (places.place_of[&model], rounded(distance));
+        match rows {
+            Some(rows) => {
+                let [a, b, c] = rows.views(&row(rows, query), &row(rows, model)).map(rounded);
+                Hit::Views(place, distance, a, b, c)
+            }
+            None => Hit::Whole(place, distance),
+        }
+    };
+    let query = |&i: &usize| {
+        let result = &method.queries[i];
+        (rounded(result.scores.ap), result.hits.iter().map(|found| hit(result.query, found)).collect())
+    };
+    Ok(Hits { name: method.name.clone(), queries: chosen.iter().map(query).collect() })
 }
 
 fn shown(evaluation: &Evaluation, store: &Store, model: usize) -> Result<Model> {
     let (gallery, row) = (&evaluation.gallery, evaluation.gallery.rows[model]);
+    let summary = store.summary(row)?;
     Ok(Model {
         id: gallery.ids[model].clone(),
         class: gallery.class(model).name.clone(),
         picture: data_uri(&grey_png(store.thumbnail(row), THUMBNAIL)),
-        symmetry: in_words(&store.summary(row)?),
+        symmetry: in_words(&summary),
+        plane: plane(&summary),
     })
 }
 
-/// Four digits after the point are enough to look at.
+/// The mirror plane behind the symmetry frame, with its evidence; in the coordinates the run worked in.
+fn plane(summary: &Summary) -> String {
+    let Some(plane) = summary.planes.first().filter(|_| summary.source == Source::Symmetry) else {
+        return String::new();
+    };
+    let [x, y, z] = plane.normal;
+    let mut text = format!("normal ({x:.3}, {y:.3}, {z:.3}) at {:.2} mm", plane.offset_mm);
+    let counts = [(plane.pair_count, "pairs of faces"), (plane.self_count, "faces onto themselves")];
+    counts.iter().filter(|(n, _)| *n > 0).for_each(|(n, what)| text += &format!(", {n} {what}"));
+    if !summary.axes.is_empty() {
+        text += ", one of all through its axis";
+    }
+    text
+}
+
+/// Four digits are enough to look at.
 fn rounded(value: f64) -> f64 {
-    (value * 1e4).round() / 1e4
+    format!("{value:.3e}").parse().unwrap_or(value)
 }

@@ -7,9 +7,11 @@ mod chart;
 mod gallery;
 mod tables;
 
+use super::formats::results;
+use super::labels::Missing;
 use super::{Evaluation, significance};
 use crate::error::{Result, RunError};
-use crate::store::Store;
+use crate::store::{Store, VERSION};
 use askama::Template;
 use chart::{Curves, Style};
 use gallery::Gallery;
@@ -32,12 +34,21 @@ struct Page<'a> {
     measures: Vec<Measures<'a>>,
     bars: Vec<Bars<'a>>,
     confusions: Vec<Confusion<'a>>,
+    /// The first [`LISTED`] of all.
     failures: Vec<Failure>,
+    failed: usize,
+    missing: &'a [Missing],
+    /// How many places of each ranking the TREC runs hold, where these are not whole.
+    run_depth: Option<usize>,
     settings: &'a str,
     store: String,
+    format: u32,
     options: String,
     gallery: Option<Gallery>,
 }
+
+/// Failures and labels without a model listed at most; the store lists all.
+const LISTED: usize = 1_000;
 
 struct Failure {
     id: String,
@@ -60,6 +71,7 @@ pub fn write(evaluation: &Evaluation, store: Option<&Store>, out: &Path) -> Resu
 }
 
 fn page<'a>(evaluation: &'a Evaluation, store: Option<&'a Store>) -> Result<Page<'a>> {
+    let missing = &evaluation.coverage.missing;
     Ok(Page {
         evaluation,
         version: env!("CARGO_PKG_VERSION"),
@@ -72,6 +84,10 @@ fn page<'a>(evaluation: &'a Evaluation, store: Option<&'a Store>) -> Result<Page
         bars: tables::bars(evaluation),
         confusions: tables::confusions(evaluation),
         failures: store.map(failures).unwrap_or_default(),
+        failed: evaluation.coverage.failed,
+        missing: &missing[..missing.len().min(LISTED)],
+        run_depth: Some(results::run_depth(&evaluation.gallery)).filter(|&depth| depth < evaluation.gallery.len()),
+        format: VERSION,
         settings: store.map(Store::settings).unwrap_or_default(),
         store: store.map(|store| store.path().display().to_string()).unwrap_or_default(),
         options: toml::to_string(&evaluation.options).map_err(|error| RunError::Settings(error.to_string()))?,
@@ -85,7 +101,7 @@ fn failures(store: &Store) -> Vec<Failure> {
         let why = format!("{}{at}", failure.error.why);
         Failure { id: failure.id.clone(), stage: failure.error.stage.name(), why }
     };
-    store.failures().iter().map(told).collect()
+    store.failures().iter().take(LISTED).map(told).collect()
 }
 
 /// How numbers are printed.

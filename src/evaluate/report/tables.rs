@@ -6,12 +6,15 @@ use super::super::{Evaluation, MethodResult};
 
 /// Classes up to which a confusion is shown as a whole.
 const WHOLE: usize = 40;
+/// Classes with bars: the largest.
+const BARS: usize = 120;
 /// Confused pairs of classes listed.
 const LISTED: usize = 12;
 
 /// A row of numbers with the text to print and the full value to sort by.
 pub struct Row<'a> {
     pub name: &'a str,
+    /// mAP, which sums a ranking up best, then the others.
     pub cells: Vec<Cell>,
     /// Chance and ceiling, which are not methods.
     pub bound: bool,
@@ -28,7 +31,7 @@ pub struct Cell {
 /// A table of measures.
 pub struct Measures<'a> {
     pub title: &'static str,
-    pub note: &'static str,
+    pub note: String,
     pub rows: Vec<Row<'a>>,
 }
 
@@ -39,32 +42,37 @@ pub fn measures(evaluation: &Evaluation) -> Vec<Measures<'_>> {
         marked(rows, evaluation.methods.len())
     };
     let mut tables = vec![
-        Measures { title: "Mean over queries", note: "micro", rows: rows(&|summary| summary.micro) },
-        Measures { title: "Mean over classes", note: "macro", rows: rows(&|summary| summary.macros) },
+        Measures { title: "Mean over queries", note: "micro".into(), rows: rows(&|summary| summary.micro) },
+        Measures { title: "Mean over classes", note: "macro".into(), rows: rows(&|summary| summary.macros) },
     ];
-    if evaluation.methods.iter().any(|method| method.queries.iter().any(|query| query.expected.is_some())) {
+    let tied = |method: &MethodResult| method.queries.iter().filter(|query| query.expected.is_some()).count();
+    let most = evaluation.methods.iter().map(tied).max().unwrap_or(0);
+    if most > 0 {
         let expected = |method: &'_ MethodResult| metrics::expected(evaluation, method).micro;
         let mut rows: Vec<_> = evaluation.methods.iter().map(|m| (m.name.as_str(), expected(m))).collect();
         rows.extend([("chance", evaluation.chance.micro), ("ceiling", evaluation.ceiling.micro)]);
-        let rows = marked(rows, evaluation.methods.len());
-        tables.push(Measures {
-            title: "Expected over ties",
-            note: "micro, equally distant models in random order",
-            rows,
-        });
+        let note = format!("micro, equally distant models in random order: that matters for up to {most} queries");
+        tables.push(Measures { title: "Expected over ties", note, rows: marked(rows, evaluation.methods.len()) });
     }
     tables
+}
+
+/// The measures in the order of the table.
+fn ordered(scores: &Scores) -> [f64; NAMES.len()] {
+    let mut values = scores.values();
+    values.rotate_right(1);
+    values
 }
 
 /// Rows with the best of the first `methods` in each column marked.
 fn marked(rows: Vec<(&str, Scores)>, methods: usize) -> Vec<Row<'_>> {
     let best: [f64; NAMES.len()] =
-        std::array::from_fn(|i| rows[..methods].iter().map(|(_, s)| s.values()[i]).fold(0.0, f64::max));
+        std::array::from_fn(|i| rows[..methods].iter().map(|(_, s)| ordered(s)[i]).fold(0.0, f64::max));
     let row = |(at, (name, scores)): (usize, (_, Scores))| {
         let bound = at >= methods;
         let cell =
             |(value, best): (f64, f64)| Cell { value, text: format!("{value:.3}"), best: !bound && value == best };
-        Row { name, cells: scores.values().into_iter().zip(best).map(cell).collect(), bound }
+        Row { name, cells: ordered(&scores).into_iter().zip(best).map(cell).collect(), bound }
     };
     rows.into_iter().enumerate().map(row).collect()
 }
@@ -77,7 +85,7 @@ pub struct Bars<'a> {
     pub values: Vec<f64>,
 }
 
-/// The bars of all classes that are queried.
+/// The bars of the classes that are queried; of the largest, where there are more than [`BARS`].
 pub fn bars(evaluation: &Evaluation) -> Vec<Bars<'_>> {
     let bar = |(i, chance): (usize, &'_ super::super::summary::ClassSummary)| {
         let class = &evaluation.ceiling.classes[i];
@@ -85,7 +93,11 @@ pub fn bars(evaluation: &Evaluation) -> Vec<Bars<'_>> {
         let values = evaluation.methods.iter().map(value).collect();
         Bars { class: &class.name, size: class.size, chance: 100.0 * chance.scores.ap, values }
     };
-    evaluation.chance.classes.iter().enumerate().map(bar).collect()
+    let mut bars: Vec<_> = evaluation.chance.classes.iter().enumerate().map(bar).collect();
+    bars.sort_by_key(|bar| std::cmp::Reverse(bar.size));
+    bars.truncate(BARS);
+    bars.sort_by_key(|bar| bar.class);
+    bars
 }
 
 /// How often a query of one class has its nearest neighbour in another.
