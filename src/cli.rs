@@ -27,6 +27,8 @@ pub enum Command {
     Query(Query),
     /// Tell what a model is, its symmetries, frames and descriptors
     Inspect(Inspect),
+    /// Write a model in its canonical pose as STEP, GLB, STL or OBJ
+    Align(Align),
     /// Look at stores, check, export and join them
     #[command(subcommand)]
     Store(Store),
@@ -150,6 +152,21 @@ pub struct Inspect {
     /// Frames to compute
     #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = method)]
     pub method: Option<Vec<Method>>,
+}
+
+#[derive(Debug, Args)]
+pub struct Align {
+    /// The model; `archive.zip!folder/part.step` names a member of an archive
+    pub model: PathBuf,
+    /// File to write; its ending says the format: .step (the same B-rep, moved), .glb, .stl or .obj
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Frame whose axes become x, y and z
+    #[arg(long, value_name = "M", default_value = "symmetry", value_parser = method)]
+    pub method: Method,
+    /// Settings file [default: pipeline.toml, if it is there]
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod aligned;
 pub mod alignment;
 pub mod archive;
 pub mod brep;

@@ -15,6 +15,7 @@ fn main() -> ExitCode {
         Command::Eval(args) => commands::eval::eval(&args),
         Command::Query(args) => commands::query::query(&args),
         Command::Inspect(args) => commands::inspect::inspect(&args),
+        Command::Align(args) => commands::align::align(&args),
         Command::Store(args) => commands::store::store(&args),
         Command::Completions { shell } => commands::completions(shell),
     };

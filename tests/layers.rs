@@ -5,12 +5,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each module of the crate, and the modules it may name.
-const LAYERS: [(&str, &[&str]); 15] = [
+const LAYERS: [(&str, &[&str]); 16] = [
     ("geometry", &[]),
     ("cancel", &[]),
     ("brep", &["geometry", "cancel"]),
     ("alignment", &["geometry", "brep", "cancel"]),
     ("stages", &["geometry", "brep", "cancel", "alignment"]),
+    ("aligned", &["geometry", "brep", "stages"]),
     ("error", &[]),
     ("archive", &["error"]),
     ("settings", &["alignment", "error", "stages"]),

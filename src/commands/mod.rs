@@ -1,5 +1,6 @@
 //! What each command does with its arguments. Results go to standard output, everything else to standard error.
 
+pub mod align;
 pub mod eval;
 pub mod inspect;
 pub mod query;

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use crate::archive::{self, Limits};
-use crate::error::Result;
+use crate::error::{Result, RunError};
 use crate::pipeline::{Described, Seconds, describe};
 use crate::settings::Settings;
 use crate::stages::{ModelError, Stage};
@@ -27,22 +27,44 @@ pub struct Inspection {
 ///
 /// Errors: there is no such file.
 pub fn inspect(path: &Path, settings: &Settings, each: &mut dyn FnMut(Inspection) -> Result<()>) -> Result<()> {
-    let (file, member) = split(path);
-    let limits = Limits { bytes: settings.limits.bytes, expansion: settings.limits.expansion };
     let mut state = Ok(());
-    archive::visit(std::slice::from_ref(&file), &limits, &mut |found| {
-        if member.as_ref().is_some_and(|member| !found.id.ends_with(member)) {
-            return ControlFlow::Continue(());
-        }
-        let model = name(path, &file, &found.id, member.is_some());
-        let (result, seconds) = match found.bytes {
+    visit(path, settings, &mut |model, bytes| {
+        let (result, seconds) = match bytes {
             Ok(bytes) => describe(&model, bytes, settings),
-            Err(why) => (Err(ModelError::new(Stage::Parse, why)), Seconds::default()),
+            Err(error) => (Err(error), Seconds::default()),
         };
         state = each(Inspection { model, result, seconds });
         if state.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     })?;
     state
+}
+
+/// The name and the bytes of the first model at `path`.
+///
+/// Errors: there is no such file, or no model in it.
+pub fn first(path: &Path, settings: &Settings) -> Result<(String, std::result::Result<Vec<u8>, ModelError>)> {
+    let mut first = None;
+    visit(path, settings, &mut |model, bytes| {
+        first = Some((model, bytes));
+        ControlFlow::Break(())
+    })?;
+    first.ok_or_else(|| RunError::Usage(format!("{}: no model in it", path.display())))
+}
+
+/// What is done with a model's name and bytes.
+type Visitor<'a> = &'a mut dyn FnMut(String, std::result::Result<Vec<u8>, ModelError>) -> ControlFlow<()>;
+
+/// Hands the models at `path` to `each`.
+fn visit(path: &Path, settings: &Settings, each: Visitor) -> Result<()> {
+    let (file, member) = split(path);
+    let limits = Limits { bytes: settings.limits.bytes, expansion: settings.limits.expansion };
+    archive::visit(std::slice::from_ref(&file), &limits, &mut |found| {
+        if member.as_ref().is_some_and(|member| !found.id.ends_with(member)) {
+            return ControlFlow::Continue(());
+        }
+        let model = name(path, &file, &found.id, member.is_some());
+        each(model, found.bytes.map_err(|why| ModelError::new(Stage::Parse, why)))
+    })
 }
 
 /// A single file keeps the name that the user gave it.

@@ -89,6 +89,19 @@ pub fn parse(bytes: &[u8], options: &Options, pose: Option<&Isometry>, cancel: &
     Ok(Parsed { model, mesh, measures, skipped, warnings })
 }
 
+/// The same STEP file with everything in it moved by a proper isometry: all its entities stay as they are, and a new
+/// product above the file's own places them.
+///
+/// # Errors
+/// Where the bytes are no STEP file, or one that cannot be moved by adding entities; and when cancelled.
+pub fn relocated(bytes: &[u8], by: &Isometry, options: &Options, cancel: &Cancel) -> Result<Vec<u8>, ModelError> {
+    if occt::is_brep(bytes) || iges::is_iges(bytes) {
+        let why = "only a STEP file can be written as STEP; write this one as .glb, .stl or .obj";
+        return Err(ModelError::new(Stage::Parse, why));
+    }
+    step::relocated(bytes, by, options, cancel)
+}
+
 /// Reads the B-rep of a file, in mm.
 ///
 /// # Errors

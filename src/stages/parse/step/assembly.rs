@@ -17,6 +17,18 @@ pub(super) struct Assembly {
     pub faults: Vec<(u64, Fault)>,
     /// Whether the file has any representation.
     pub has_representations: bool,
+    pub roots: Roots,
+}
+
+/// From where the placed items are reached.
+#[derive(Debug, Default)]
+pub(super) struct Roots {
+    /// The products that are part of no other and place something.
+    pub products: Vec<u64>,
+    /// The representations that no product leads to and that place something.
+    pub representations: Vec<u64>,
+    /// The items of a file without such products and representations.
+    pub items: Vec<u64>,
 }
 
 /// Places the items of all products, then those of representations that no product leads to.
@@ -29,18 +41,24 @@ pub(super) fn assemble(file: File, room: usize, cancel: &Cancel) -> Result<Assem
         representations: Representations::new(file, &structure, room, cancel),
         own: FxHashMap::default(),
         placed: Vec::new(),
+        roots: Roots::default(),
     };
     for root in roots(&structure) {
+        let before = walk.placed.len();
         walk.product(root, &Transform::identity(), &mut Vec::new(), &mut vec![root]);
+        if walk.placed.len() > before {
+            walk.roots.products.push(root);
+        }
     }
     walk.orphans();
-    let Walk { mut placed, representations, .. } = walk;
+    let Walk { mut placed, representations, mut roots, .. } = walk;
     let mut faults = representations.faults;
     if placed.is_empty() {
         placed = bare_items(&file, &mut faults, room);
+        roots.items = placed.iter().map(|p| p.item).collect();
     }
     cancel.check()?;
-    Ok(Assembly { placed, faults, has_representations: !structure.representations.is_empty() })
+    Ok(Assembly { placed, faults, has_representations: !structure.representations.is_empty(), roots })
 }
 
 /// The products that are part of no other; where all are, as in a cycle, the first one.
@@ -59,6 +77,7 @@ struct Walk<'a> {
     /// What each product places itself, without its parts.
     own: FxHashMap<u64, Vec<Placed>>,
     placed: Vec<Placed>,
+    roots: Roots,
 }
 
 impl Walk<'_> {
@@ -158,6 +177,9 @@ impl Walk<'_> {
                 let mut items = prefer_brep(self.representations.expand(&[id], &Transform::identity()));
                 items.retain(|p| !known.contains(&p.item) && (known.is_empty() || p.kind != BodyKind::Bare));
                 known.extend(items.iter().map(|p| p.item));
+                if !items.is_empty() {
+                    self.roots.representations.push(id);
+                }
                 self.placed.extend(items);
             }
         }

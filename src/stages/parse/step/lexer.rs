@@ -45,6 +45,8 @@ pub(super) struct Table {
     pub schema: Option<usize>,
     /// Whether the file starts or ends as Part 21 says.
     pub marked: bool,
+    /// Whether the end marker is there.
+    pub ended: bool,
     pub warnings: Vec<String>,
     pub effort: Effort,
 }
@@ -84,6 +86,7 @@ pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
     if broken_strings > 0 {
         table.warnings.push(format!("{broken_strings} statements with a string that does not end were left out"));
     }
+    table.ended = ended;
     if !ended {
         table.warnings.push("the end marker END-ISO-10303-21 is missing".into());
     }
@@ -208,6 +211,14 @@ enum End {
     /// A string runs over the start of another instance, which is here.
     BrokenString(usize),
     File,
+}
+
+/// The place behind the statement at `at`, where it ends.
+pub(super) fn behind_statement(bytes: &[u8], at: usize) -> Option<usize> {
+    match statement_end(bytes, at) {
+        End::Semicolon(end) => Some(end + 1),
+        End::BrokenString(_) | End::File => None,
+    }
 }
 
 /// The first semicolon outside strings and comments.

@@ -22,6 +22,7 @@ mod keyword;
 mod lexer;
 mod placement;
 mod records;
+mod relocate;
 mod representation;
 mod splines;
 mod structure;
@@ -45,6 +46,7 @@ use super::{Options, Reading};
 use crate::brep::{BodyId, Curve, FreeCurve, Occurrence, Skipped};
 use crate::cancel::{Cancel, Cancelled};
 use crate::stages::{ModelError, Stage};
+pub(super) use relocate::relocated;
 
 /// Reads the B-rep of a STEP file, in mm.
 ///
