@@ -1,7 +1,11 @@
 //! Nearest neighbours in a store: exact, by the distances of eq. 8.
+//!
+//! [`Rows`] are the descriptors of a store, or of memory; one query or many go through them in one pass (`scan`).
 
+mod kernels;
 mod page;
 pub mod picture;
+mod scan;
 
 pub use page::{Asked, write_page};
 
@@ -12,12 +16,8 @@ use crate::stages::descriptor::{MAGNITUDES, PHASES};
 use crate::stages::merge::Label;
 use crate::stages::projection_sweep::Source;
 use crate::store::{Store, Summary};
-use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
-
-/// Rows that a thread looks through at a time.
-const CHUNK: usize = 4096;
 
 /// The descriptors of a model in a frame, and how they are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -97,6 +97,19 @@ impl<'a> Rows<'a> {
         Ok(Self { values, length, kind: name.kind })
     }
 
+    /// Rows that lie in memory, one after the other: [`MAGNITUDES`] or [`PHASES`] numbers each.
+    ///
+    /// # Errors
+    /// A part of a row at the end.
+    pub fn new(values: &'a [f32], kind: Kind) -> Result<Self> {
+        let length = if kind == Kind::Phase { PHASES } else { MAGNITUDES };
+        if values.len().is_multiple_of(length) {
+            Ok(Self { values, length, kind })
+        } else {
+            Err(RunError::Usage(format!("{} numbers are no whole rows of {length}", values.len())))
+        }
+    }
+
     /// The descriptor of model `i`.
     pub fn row(&self, i: usize) -> &'a [f32] {
         &self.values[i * self.length..(i + 1) * self.length]
@@ -125,22 +138,25 @@ impl<'a> Rows<'a> {
     /// # Errors
     /// A descriptor of another length, or distances that are not numbers.
     pub fn nearest(&self, descriptor: &[f32], k: usize) -> Result<Vec<Hit>> {
-        if descriptor.len() != self.length {
-            let (expected, got) = (self.length, descriptor.len());
+        Ok(self.nearest_to_each(&[descriptor], k)?.remove(0))
+    }
+
+    /// The `k` models nearest to each of many descriptors, as [`Rows::nearest`] finds them, in one pass over the rows.
+    ///
+    /// # Errors
+    /// A descriptor of another length, or distances that are not numbers.
+    pub fn nearest_to_each(&self, descriptors: &[&[f32]], k: usize) -> Result<Vec<Vec<Hit>>> {
+        if let Some(other) = descriptors.iter().find(|d| d.len() != self.length) {
+            let (expected, got) = (self.length, other.len());
             return Err(RunError::Usage(format!("a descriptor of {expected} numbers is needed, this one has {got}")));
         }
-        let nearest = |chunk: usize, rows: &[f32]| {
-            let distances = rows.chunks_exact(self.length).map(|row| self.distance(descriptor, row));
-            let first = chunk * CHUNK;
-            smallest(distances.enumerate().map(|(i, distance)| (distance, first + i)).collect(), k)
-        };
-        let chunks = self.values.par_chunks(CHUNK * self.length).enumerate();
-        let found: Vec<_> = chunks.flat_map_iter(|(chunk, rows)| nearest(chunk, rows)).collect();
-        if found.iter().any(|(distance, _)| distance.is_nan()) {
+        let found = scan::nearest(self, descriptors, k);
+        if found.iter().any(|nearest| nearest.undefined) {
             return Err(RunError::Usage("a distance is not a number".into()));
         }
-        let hit = |(distance, row): (f64, usize)| Hit { row, distance, views: self.views(descriptor, self.row(row)) };
-        Ok(smallest(found, k).into_iter().map(hit).collect())
+        let hit = |descriptor, (distance, row)| Hit { row, distance, views: self.views(descriptor, self.row(row)) };
+        let hits = descriptors.iter().zip(found).map(|(d, found)| found.sorted().map(|f| hit(d, f)).collect());
+        Ok(hits.collect())
     }
 }
 
@@ -178,18 +194,6 @@ pub fn in_words(summary: &Summary) -> String {
     }
 }
 
-/// The `k` smallest, in order; NaN comes first so that it is seen.
-fn smallest(mut distances: Vec<(f64, usize)>, k: usize) -> Vec<(f64, usize)> {
-    let key = |distance: f64| if distance.is_nan() { f64::NEG_INFINITY } else { distance };
-    let order = |a: &(f64, usize), b: &(f64, usize)| key(a.0).total_cmp(&key(b.0)).then(a.1.cmp(&b.1));
-    if k < distances.len() && k > 0 {
-        distances.select_nth_unstable_by(k - 1, order);
-    }
-    distances.truncate(k);
-    distances.sort_unstable_by(order);
-    distances
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,7 +206,7 @@ mod tests {
     }
 
     fn rows(values: &[f32]) -> Rows<'_> {
-        Rows { values, length: MAGNITUDES, kind: Kind::Magnitude }
+        Rows::new(values, Kind::Magnitude).unwrap()
     }
 
     #[test]
@@ -231,14 +235,58 @@ mod tests {
         assert!("magic".parse::<Name>().is_err());
     }
 
-    proptest! {
-        #[test]
-        fn chunks_find_what_sorting_finds(firsts in proptest::collection::vec(0..9u8, 1..40), k in 1..12usize) {
-            let mut sorted: Vec<_> = firsts.iter().enumerate().map(|(i, &d)| (f64::from(d), i)).collect();
-            let found = smallest(sorted.clone(), k);
-            sorted.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap());
-            sorted.truncate(k);
-            prop_assert_eq!(found, sorted);
+    /// What the definition says: all distances, sorted.
+    fn by_definition(rows: &Rows, query: &[f32], k: usize) -> Vec<(usize, f64)> {
+        let count = rows.values.len() / rows.length;
+        let mut all: Vec<_> = (0..count).map(|i| (i, rows.distance(query, rows.row(i)))).collect();
+        all.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        all.truncate(k);
+        all
+    }
+
+    fn check(kind: Kind, values: &[f32], queries: &[&[f32]], k: usize) {
+        let rows = Rows::new(values, kind).unwrap();
+        let found = rows.nearest_to_each(queries, k).unwrap();
+        for (query, hits) in queries.iter().zip(found) {
+            let found: Vec<_> = hits.iter().map(|hit| (hit.row, hit.distance)).collect();
+            assert_eq!(found, by_definition(&rows, query, k));
         }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+        #[test]
+        fn one_or_many_queries_find_what_the_definition_says(
+            seed in 0u64.., count in 1..2000usize, asked in 1..40usize, k in 1..30usize, coarse in any::<bool>(),
+        ) {
+            // Few different values make many equal distances.
+            let value = |i: usize| {
+                let bits = (seed ^ i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+                if coarse { (bits % 3) as f32 } else { bits as f32 / 1e7 }
+            };
+            for (kind, length) in [(Kind::Magnitude, MAGNITUDES), (Kind::Swapped, MAGNITUDES), (Kind::Phase, PHASES)] {
+                let count = if kind == Kind::Phase { count / 8 + 1 } else { count };
+                let values: Vec<f32> = (0..count * length).map(value).collect();
+                let others: Vec<f32> = (0..asked * length).map(|i| value(i * 7 + 1)).collect();
+                let mut queries: Vec<_> = others.chunks_exact(length).collect();
+                queries[0] = &values[..length];
+                check(kind, &values, &queries, k);
+            }
+        }
+    }
+
+    #[test]
+    fn shares_of_many_rows_are_joined() {
+        let values: Vec<f32> = (0..20_000 * MAGNITUDES).map(|i| (i * i % 1009) as f32).collect();
+        let queries: Vec<_> = values.chunks_exact(MAGNITUDES).step_by(4001).collect();
+        check(Kind::Magnitude, &values, &queries, 25);
+        check(Kind::Magnitude, &values, &queries[..1], 25);
+    }
+
+    #[test]
+    fn distances_beyond_single_precision_are_still_in_order() {
+        let values = values(&[3e20, 1e20, 2e20, 1e-30, 0.0]);
+        check(Kind::Magnitude, &values, &[&values[..MAGNITUDES]; 1], 3);
+        check(Kind::Magnitude, &values, &[&values[4 * MAGNITUDES..]; 9], 4);
     }
 }
