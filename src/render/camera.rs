@@ -55,8 +55,18 @@ impl Camera {
         (self.toward * 0.8 + self.up * 0.55 - self.right * 0.25).normalize()
     }
 
-    /// Shows `factor` times as much around the same point.
-    pub fn widened(self, factor: f64) -> Self {
+    /// The axis, or its opposite: whichever points towards the eye.
+    pub fn facing(&self, axis: &Vector) -> Vector {
+        if axis.dot(&self.toward) < 0.0 { -axis } else { *axis }
+    }
+
+    /// Shows as much around the same point as these points need to be seen.
+    pub fn including(self, points: &[Point]) -> Self {
+        let reach = |p: &Point| {
+            let [x, y, _] = self.project(p);
+            (x - self.middle).abs().max((y - self.middle).abs()) * MARGIN / self.middle
+        };
+        let factor = points.iter().map(reach).filter(|r| r.is_finite()).fold(1.0, f64::max);
         Self { scale: self.scale / factor, ..self }
     }
 }

@@ -12,6 +12,7 @@ pub type Rgb = [u8; 3];
 /// The colour of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Paint {
+    /// One colour.
     Plain(Rgb),
     /// The first colour on the positive side of the scene's plane, the second on the other.
     Split(Rgb, Rgb),
@@ -85,6 +86,29 @@ impl Canvas {
                 }
             });
         }
+    }
+
+    /// Draws a line, `wide` pixels wide, where nothing nearer is drawn yet; with `over` also there.
+    pub fn line(&mut self, ends: [Point; 2], wide: f64, colour: Rgb, over: bool) {
+        let [a, b] = ends.map(|p| self.camera.project(&p));
+        let (x, y) = (b[0] - a[0], b[1] - a[1]);
+        let half = 0.5 * wide * self.samples as f64 / x.hypot(y).max(1e-9);
+        let corner = |p: [f64; 3], side: f64| [p[0] - side * y * half, p[1] + side * x * half, p[2]];
+        let flat = [corner(a, 1.0), corner(b, 1.0), corner(b, -1.0), corner(a, -1.0)];
+        for corners in [[0, 1, 2], [0, 2, 3]] {
+            let values = corners.map(|i| [flat[i][2], 0.0, 0.0]);
+            self.samples_of(&corners.map(|i| flat[i]), &values, |canvas, at, [depth, ..]| {
+                if over || depth as f32 >= canvas.depths[at] {
+                    canvas.colours[at] = colour;
+                }
+            });
+        }
+    }
+
+    /// Where a point lies in the picture, in pixels to the right and down.
+    pub fn pixel_of(&self, p: &Point) -> [f32; 2] {
+        let [x, y, _] = self.camera.project(p);
+        [x, y].map(|c| (c / self.samples as f64) as f32)
     }
 
     /// Darkens the samples where one face borders on another or on the background.

@@ -6,27 +6,34 @@ use std::path::{Path, PathBuf};
 use tiny_skia::{Color, Paint as Fill, Pixmap, PremultipliedColorU8, Rect, Transform};
 
 use crate::brep::PlacedFaceId;
-use crate::geometry::{Frame, Plane};
+use crate::geometry::{Frame, Plane, Point};
 use crate::stages::descriptor::silhouette::Silhouette;
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 use crate::stages::projection_sweep::CanonicalFrame;
 
 use super::camera::extent;
-use super::{Canvas, GREY, Paint, Rgb, Scene, area_curve, png, shaded};
+use super::text::{self, Align};
+use super::{Camera, Canvas, GREY, Paint, Rgb, Scene, area_curve, png, shaded};
 
 /// Pixels on a side of a figure.
 const SIDE: usize = 800;
 const BLUE: Rgb = [52, 108, 214];
 const RED: Rgb = [216, 58, 52];
 const GREEN: Rgb = [46, 160, 84];
+/// The symmetry plane in figure 3.
+const SLATE: Rgb = [110, 118, 135];
 const PURPLE: Rgb = [150, 90, 190];
 /// First, second and third canonical plane, as in the paper's figure 5.
 const PLANES: [Rgb; 3] = [RED, BLUE, GREEN];
-/// Pictures with planes show this much more than the model.
-const ROOM: f64 = 1.3;
 /// Planes reach beyond the model by this share of D.
 const OVERHANG: f64 = 0.06;
+/// Width of the borders of planes and of axes, pixels.
+const LINE: f64 = 1.6;
+/// Axes reach beyond their planes by this share of D, and the middle of their names by this much more.
+const AXIS: f64 = 0.07;
+/// Pixels to a point of the font.
+const FONT: usize = 2;
 /// White between two silhouettes, pixels.
 const GAP: usize = 12;
 
@@ -67,39 +74,67 @@ pub fn symmetry(parsed: &Parsed, symmetries: &Symmetries, frame: &Frame) -> Pixm
         let whole = |id: &PlacedFaceId| parsed.mesh.points_of(*id).iter().all(|p| on_plane(&found.plane, p, parsed));
         found.selfs.iter().filter(|id| whole(id)).for_each(|id| paints[id.index()] = Paint::Plain(PURPLE));
     }
-    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, room: ROOM };
+    let sheet = plane.map(|plane| sheet(parsed, frame, 0, &plane));
+    let also = sheet.map(Vec::from).unwrap_or_default();
+    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, also: &also };
     let mut canvas = shaded(&scene, &|id| paints[id.index()], SIDE);
-    if let Some(plane) = plane {
-        lay(&mut canvas, parsed, frame, 0, &plane, [150, 150, 160]);
+    if let Some(corners) = sheet {
+        lay(&mut canvas, corners, SLATE);
     }
     canvas.resolved()
 }
 
 /// Whether a point lies on the plane, but for a thousandth of the model's size.
-fn on_plane(plane: &Plane, p: &crate::geometry::Point, parsed: &Parsed) -> bool {
+fn on_plane(plane: &Plane, p: &Point, parsed: &Parsed) -> bool {
     plane.signed_distance(p).abs() < parsed.measures.tolerance.length(1e-3)
 }
 
-/// The model with the three canonical planes (figure 5).
+/// The model with the three canonical planes and their normals, the axes (figure 5).
 pub fn frame(parsed: &Parsed, frame: &Frame) -> Pixmap {
-    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane: None, room: ROOM };
+    let plane = |i: usize| Plane::through(&frame.origin, &frame.axes[i]);
+    let sheets = [0, 1, 2].map(|i| sheet(parsed, frame, i, &plane(i)));
+    let tips = [0, 1, 2].map(|i| tip(parsed, frame, i, AXIS));
+    let names = [0, 1, 2].map(|i| tip(parsed, frame, i, 1.6 * AXIS));
+    let also: Vec<_> = sheets.iter().flatten().chain(&names).copied().collect();
+    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane: None, also: &also };
     let mut canvas = shaded(&scene, &|_| Paint::Plain(GREY), SIDE);
-    for (i, colour) in PLANES.into_iter().enumerate() {
-        let plane = Plane::through(&frame.origin, &frame.axes[i]);
-        lay(&mut canvas, parsed, frame, i, &plane, colour);
+    for (corners, colour) in sheets.into_iter().zip(PLANES) {
+        lay(&mut canvas, corners, colour);
     }
-    canvas.resolved()
+    for (tip, colour) in tips.into_iter().zip(PLANES) {
+        canvas.line([frame.origin, tip], 1.5 * LINE, colour, true);
+    }
+    let mut picture = canvas.resolved();
+    for (i, point) in names.iter().enumerate() {
+        let [x, y] = canvas.pixel_of(point);
+        text::write(&mut picture, &format!("e{i}"), [x, y - 0.5 * text::height(FONT) as f32], FONT, Align::Middle);
+    }
+    picture
 }
 
-/// Lays the plane at right angles to axis `i` over the picture, a little larger than the model.
-fn lay(canvas: &mut Canvas, parsed: &Parsed, frame: &Frame, i: usize, plane: &Plane, colour: Rgb) {
+/// The end of an axis: beyond the model's end towards the eye.
+fn tip(parsed: &Parsed, frame: &Frame, i: usize, beyond: f64) -> Point {
+    let axis = Camera::from_corner(&parsed.mesh, &parsed.measures, frame, SIDE).facing(&frame.axes[i]);
+    let (_, high) = extent(&parsed.mesh, &parsed.measures, &axis);
+    let end = axis.dot(&(parsed.measures.centroid - frame.origin)) + high;
+    frame.origin + axis * (end + parsed.measures.tolerance.length(OVERHANG + beyond))
+}
+
+/// The corners of the plane at right angles to axis `i`, a little larger than the model.
+fn sheet(parsed: &Parsed, frame: &Frame, i: usize, plane: &Plane) -> [Point; 4] {
     let middle = plane.project(&parsed.measures.centroid);
     let overhang = parsed.measures.tolerance.length(OVERHANG);
     let [a, b] = [&frame.axes[(i + 1) % 3], &frame.axes[(i + 2) % 3]];
     let [(left, right), (low, high)] = [a, b].map(|axis| extent(&parsed.mesh, &parsed.measures, axis));
     let corner = |x: f64, y: f64| middle + a * x + b * y;
     let (left, right, low, high) = (left - overhang, right + overhang, low - overhang, high + overhang);
-    canvas.square([corner(left, low), corner(right, low), corner(right, high), corner(left, high)], colour);
+    [corner(left, low), corner(right, low), corner(right, high), corner(left, high)]
+}
+
+/// Lays a translucent plane with its border over the picture.
+fn lay(canvas: &mut Canvas, corners: [Point; 4], colour: Rgb) {
+    canvas.square(corners, colour);
+    (0..4).for_each(|i| canvas.line([corners[i], corners[(i + 1) % 4]], LINE, colour, false));
 }
 
 /// The projected areas of the planes tried (figure 4), the chosen one marked.

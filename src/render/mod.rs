@@ -13,7 +13,7 @@ use tiny_skia::Pixmap;
 
 use crate::brep::measure::Measures;
 use crate::brep::{Mesh, PlacedFaceId};
-use crate::geometry::{Frame, Plane, Vector};
+use crate::geometry::{Frame, Plane, Point, Vector};
 
 pub use camera::Camera;
 pub use canvas::{Canvas, Paint, Rgb};
@@ -32,20 +32,23 @@ pub const GREY: Rgb = [176, 180, 186];
 /// What is drawn: a mesh as seen from the corner of its frame.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
+    /// The model.
     pub mesh: &'a Mesh,
+    /// What it measures.
     pub measures: &'a Measures,
+    /// The frame it is seen in.
     pub frame: &'a Frame,
     /// The plane that [`Paint::Split`] splits at.
     pub plane: Option<Plane>,
-    /// How much more than the model is shown: 1 fits it.
-    pub room: f64,
+    /// Points beside the model that the picture must hold.
+    pub also: &'a [Point],
 }
 
 /// Draws the faces, each in its paint, on white, with their outlines; `side` pixels wide and high.
 ///
 /// The picture is not yet resolved, so that planes may be laid over it.
 pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize) -> Canvas {
-    let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * SAMPLES).widened(scene.room);
+    let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * SAMPLES).including(scene.also);
     let mut canvas = Canvas::new(camera, side, SAMPLES);
     let lights = lights(scene.mesh, canvas.camera());
     for number in 0..scene.mesh.faces.len() {
@@ -66,7 +69,7 @@ pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize)
 
 /// A grey picture of the model for stores and galleries: [`THUMBNAIL`]^2 bytes, row by row from the top, 255 is white.
 pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame) -> Vec<u8> {
-    let scene = Scene { mesh, measures, frame, plane: None, room: 1.0 };
+    let scene = Scene { mesh, measures, frame, plane: None, also: &[] };
     let picture = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL).resolved();
     picture.pixels().iter().map(|p| luminance([p.red(), p.green(), p.blue()])).collect()
 }
@@ -99,7 +102,6 @@ fn lights(mesh: &Mesh, camera: &Camera) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::alignment::shapes;
-    use crate::geometry::Point;
 
     fn own_frame(measures: &Measures) -> Frame {
         Frame { axes: [Vector::x(), Vector::y(), Vector::z()], origin: measures.centroid }
@@ -124,7 +126,7 @@ mod tests {
         mesh.faces = vec![first, second];
         let measures = shapes::measures(&mesh);
         let frame = own_frame(&measures);
-        let scene = Scene { mesh: &mesh, measures: &measures, frame: &frame, plane: None, room: 1.0 };
+        let scene = Scene { mesh: &mesh, measures: &measures, frame: &frame, plane: None, also: &[] };
         let paint = |id: PlacedFaceId| Paint::Plain(if id.0 == 0 { [200, 0, 0] } else { [0, 0, 200] });
         let canvas = shaded(&scene, &paint, 64);
         let [x, y, _] =
