@@ -11,6 +11,7 @@ mod difference;
 mod encoding;
 pub mod export;
 mod format;
+mod ids;
 pub mod journal;
 pub mod lock;
 pub mod merge;

@@ -8,6 +8,7 @@ use zerocopy::FromBytes;
 
 use super::encoding;
 use super::format::{Kind, Layout, Section, u64_at};
+use super::ids::Ids;
 use super::record::{Failure, Hash, ModelRecord, Pose, Summary, THUMBNAIL, frame_of};
 use crate::alignment::Method;
 use crate::error::{Result, RunError};
@@ -19,7 +20,7 @@ pub struct Store {
     path: PathBuf,
     map: Mmap,
     layout: Layout,
-    ids: Vec<String>,
+    ids: Ids,
     methods: Vec<Method>,
     failures: Vec<Failure>,
     settings: String,
@@ -44,13 +45,10 @@ impl Store {
         let layout = Layout::of(&map)?;
         let small = |kind| checked(&map, &layout, kind);
         let settings = std::str::from_utf8(small(Kind::Settings)?).map_err(|e| format!("settings: {e}"))?.to_owned();
-        let ids: Vec<String> = encoding::decode(small(Kind::Ids)?).map_err(|e| format!("ids: {e}"))?;
+        let ids = Ids::of(small(Kind::Ids)?, layout.models)?;
         let failures = encoding::decode(small(Kind::Failures)?).map_err(|e| format!("failures: {e}"))?;
         let frames = layout.sections.iter().filter(|s| s.kind == Kind::Frames);
         let methods: Vec<Method> = frames.filter_map(|s| s.method).collect();
-        if ids.len() as u64 != layout.models || !ids.is_sorted() {
-            return Err(format!("{} ids for {} models, or not sorted", ids.len(), layout.models));
-        }
         let store = Self { path, map, layout, ids, methods, failures, settings };
         store.check_shapes()?;
         Ok(store)
@@ -83,17 +81,26 @@ impl Store {
 
     /// Whether no model was done.
     pub fn is_empty(&self) -> bool {
-        self.ids.is_empty()
+        self.len() == 0
     }
 
     /// The id of model `i`.
     pub fn id(&self, i: usize) -> &str {
-        &self.ids[i]
+        self.ids.get(self.section(Kind::Ids, None).unwrap_or_default(), i)
     }
 
     /// The row of the model with this id.
     pub fn find(&self, id: &str) -> Option<usize> {
-        self.ids.binary_search_by(|probe| probe.as_str().cmp(id)).ok()
+        let (mut low, mut high) = (0, self.len());
+        while low < high {
+            let middle = low.midpoint(high);
+            match self.id(middle).cmp(id) {
+                std::cmp::Ordering::Less => low = middle + 1,
+                std::cmp::Ordering::Equal => return Some(middle),
+                std::cmp::Ordering::Greater => high = middle,
+            }
+        }
+        None
     }
 
     /// BLAKE3 of the bytes of model `i`.
