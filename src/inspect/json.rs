@@ -70,8 +70,8 @@ fn plane(found: &SymmetryPlane, model: &Model, mesh: &Mesh) -> Value {
     })
 }
 
-/// An entity number is a number; `occurrence/entity` is text.
-fn face_name(name: &str) -> Value {
+/// The name of a face as JSON: an entity number is a number, `occurrence/entity` is text.
+pub fn face_name(name: &str) -> Value {
     name.parse::<u64>().map_or_else(|_| name.into(), Value::from)
 }
 
