@@ -29,14 +29,31 @@ pub enum Command {
     Inspect(Inspect),
     /// Write a model in its canonical pose as STEP, GLB, STL or OBJ
     Align(Align),
+    /// List the rotations and mirrors that map models onto themselves, as BOP's models_info.json does
+    Symmetries(Symmetries),
     /// Look at stores, check, export and join them
     #[command(subcommand)]
     Store(Store),
     /// Print the completions for a shell
+    #[command(
+        after_help = "Example:\n\x20 symalign completions bash > ~/.local/share/bash-completion/completions/symalign"
+    )]
     Completions { shell: clap_complete::Shell },
+    /// Write the manual pages, one for each command
+    #[command(after_help = "Example:\n\x20 symalign man ~/.local/share/man/man1")]
+    Man {
+        /// Folder to write to
+        dir: PathBuf,
+    },
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n\
+\x20 symalign run                                   everything as pipeline.toml says\n\
+\x20 symalign run parts --store s                   a folder, an archive or a file\n\
+\x20 symalign run parts --labels labels.csv --random-pose 1 --out report\n\
+\x20 symalign run parts --shard 1/2 --store s1      the first of two machines\n\
+\x20 dpkg-deb --fsys-tarfile models.deb | symalign run - --store s")]
 pub struct Run {
     /// Files, folders, archives (.zip .tar .tar.gz .tar.xz .tar.zst .7z), or - for a tar stream on standard input
     pub input: Vec<PathBuf>,
@@ -80,6 +97,9 @@ pub struct Run {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n\
+\x20 symalign eval --store s --labels labels.csv --out report\n\
+\x20 symalign eval --store s --method symmetry,cpca:phase")]
 pub struct Eval {
     /// Folder of the store [default: store; none where the results of others are given]
     #[arg(long, value_name = "DIR")]
@@ -115,9 +135,15 @@ pub enum Compat {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n\
+\x20 symalign query part.step --store s -k 5\n\
+\x20 symalign query part.step --store s --json      with the planes and faces behind the hits\n\
+\x20 symalign query part.step --store s --out hits.html\n\
+\x20 symalign query new-parts --store s --json      every model of a folder, in one pass over the store")]
 pub struct Query {
-    /// The model to look for
-    pub model: PathBuf,
+    /// The models to look for: files, folders, archives
+    #[arg(required = true)]
+    pub model: Vec<PathBuf>,
     /// Folder of the store
     #[arg(long, value_name = "DIR", default_value = "store")]
     pub store: PathBuf,
@@ -127,15 +153,19 @@ pub struct Query {
     /// Method to compare by, such as cpca or cpca:phase [default: the magnitudes of the store's first frame]
     #[arg(long, value_name = "M")]
     pub method: Option<Name>,
-    /// Print JSON
+    /// Print JSON, one object a line for each model, with the planes and faces behind the hits
     #[arg(long)]
     pub json: bool,
-    /// Write a page with the pictures of the hits
+    /// Write a page with the pictures of the hits of one model
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n\
+\x20 symalign inspect part.step\n\
+\x20 symalign inspect part.step --json | jq .symmetry.planes[0]\n\
+\x20 symalign inspect archive.zip!folder/part.step --render pictures")]
 pub struct Inspect {
     /// Models; `archive.zip!folder/part.step` names a member of an archive
     #[arg(required = true)]
@@ -155,6 +185,10 @@ pub struct Inspect {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Examples:\n\
+\x20 symalign align part.step --out aligned.step    the same B-rep, moved; mm\n\
+\x20 symalign align part.igs --out aligned.glb      triangles with normals; metres, as glTF asks for\n\
+\x20 symalign align part.step --method cpca --out aligned.stl")]
 pub struct Align {
     /// The model; `archive.zip!folder/part.step` names a member of an archive
     pub model: PathBuf,
@@ -169,7 +203,31 @@ pub struct Align {
     pub config: Option<PathBuf>,
 }
 
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n\
+\x20 symalign symmetries part.step\n\
+\x20 symalign symmetries models/*.step --out models_info.json")]
+pub struct Symmetries {
+    /// Models; the objects are numbered in this order, or as files named obj_000001.step are
+    #[arg(required = true)]
+    pub model: Vec<PathBuf>,
+    /// Print JSON, as without this
+    #[arg(long)]
+    pub json: bool,
+    /// Write to this file instead
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Settings file [default: pipeline.toml, if it is there]
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+}
+
 #[derive(Debug, Subcommand)]
+#[command(after_help = "Examples:\n\
+\x20 symalign store info s --json                   dtype, shape and offset of each section\n\
+\x20 symalign store list s --failures\n\
+\x20 symalign store merge s1 s2 --into s\n\
+\x20 symalign store export s --format npy --out arrays")]
 pub enum Store {
     /// Tell what a store holds and where its sections lie
     Info {

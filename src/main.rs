@@ -17,6 +17,8 @@ fn main() -> ExitCode {
         Command::Inspect(args) => commands::inspect::inspect(&args),
         Command::Align(args) => commands::align::align(&args),
         Command::Store(args) => commands::store::store(&args),
+        Command::Symmetries(args) => commands::symmetries::symmetries(&args),
+        Command::Man { dir } => commands::man(&dir),
         Command::Completions { shell } => commands::completions(shell),
     };
     let exit = ended.unwrap_or_else(|error| {

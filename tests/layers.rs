@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each module of the crate, and the modules it may name.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 17] = [
     ("geometry", &[]),
     ("cancel", &[]),
     ("brep", &["geometry", "cancel"]),
@@ -16,6 +16,7 @@ const LAYERS: [(&str, &[&str]); 16] = [
     ("archive", &["error"]),
     ("settings", &["alignment", "error", "stages"]),
     ("render", &["geometry", "brep", "cancel", "stages", "error"]),
+    ("rotations", &["alignment", "geometry", "brep", "cancel", "stages"]),
     ("store", &["alignment", "error", "geometry", "stages"]),
     ("distance", &["stages", "cancel"]),
     ("search", &["alignment", "distance", "error", "stages", "store"]),

@@ -6,6 +6,7 @@ pub mod inspect;
 pub mod query;
 pub mod run;
 pub mod store;
+pub mod symmetries;
 
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -42,5 +43,12 @@ pub fn completions(shell: clap_complete::Shell) -> Result<Exit> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "symalign", &mut script);
     print(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Done)
+}
+
+/// Writes the manual pages into `dir`: symalign.1, symalign-run.1 and so on.
+pub fn man(dir: &Path) -> Result<Exit> {
+    let written = std::fs::create_dir_all(dir).and_then(|()| clap_mangen::generate_to(Cli::command(), dir));
+    written.map_err(|e| RunError::file(dir, e))?;
     Ok(Exit::Done)
 }

@@ -1,0 +1,81 @@
+//! `symmetries`.
+
+use serde_json::{Map, Value};
+use symalign::cancel::Cancel;
+use symalign::error::{Result, RunError};
+use symalign::inspect::{self, Inspection};
+use symalign::pipeline::Described;
+use symalign::rotations::{self, bop};
+use symalign::settings::Settings;
+
+use crate::cli::{Exit, Symmetries};
+
+/// Writes the rotations and mirrors of each model; [`Exit::ModelFailed`] where one could not be read.
+pub fn symmetries(args: &Symmetries) -> Result<Exit> {
+    let mut settings = super::settings(args.config.as_deref(), None)?;
+    settings.methods.clear();
+    settings.random_pose = None;
+    let (mut objects, mut failed) = (Vec::new(), false);
+    let mut each = |inspection: Inspection| {
+        let model = &inspection.model;
+        match inspection.result {
+            Ok(described) => objects.push((model.clone(), object(model, &described, &settings)?)),
+            Err(error) => {
+                eprintln!("symalign: {model}: {error}");
+                failed = true;
+            }
+        }
+        Ok(())
+    };
+    args.model.iter().try_for_each(|path| inspect::inspect(path, &settings, &mut each))?;
+    let numbers = numbers(&objects);
+    let numbered = numbers.into_iter().zip(objects).map(|(number, (_, object))| (number.to_string(), object));
+    let text = serde_json::to_string_pretty(&Value::Object(numbered.collect::<Map<_, _>>()));
+    let text = text.map_err(|e| RunError::Usage(e.to_string()))? + "\n";
+    match &args.out {
+        Some(path) => std::fs::write(path, text).map_err(|e| RunError::file(path, e))?,
+        None => super::print(&text)?,
+    }
+    Ok(if failed { Exit::ModelFailed } else { Exit::Done })
+}
+
+fn object(model: &str, described: &Described, settings: &Settings) -> Result<Value> {
+    let ranked = &described.framed.ranked;
+    let options = rotations::Options {
+        exact: settings.merge.exact,
+        samples: settings.validate.samples,
+        on_surface: settings.validate.on_surface,
+        normal_angle_deg: settings.validate.normal_angle_deg,
+    };
+    let (parsed, symmetries) = (&ranked.posed.parsed, &ranked.symmetries);
+    let found = rotations::rotations(parsed, symmetries, &options, &Cancel::new());
+    let found = found.map_err(|_| RunError::Usage(format!("{model}: cancelled")))?;
+    Ok(bop::object(model, parsed, symmetries, &found, options.exact))
+}
+
+/// The benchmark names objects by numbers: those of the files where all are called `obj_000001.step` and so on and
+/// differ, else 1, 2, and so on.
+fn numbers<T>(objects: &[(String, T)]) -> Vec<u64> {
+    let number = |model: &str| {
+        let stem = std::path::Path::new(model).file_stem()?.to_str()?;
+        stem.strip_prefix("obj_")?.parse::<u64>().ok()
+    };
+    let named: Option<Vec<_>> = objects.iter().map(|(model, _)| number(model)).collect();
+    let mut distinct = named.clone().unwrap_or_default();
+    distinct.sort_unstable();
+    distinct.dedup();
+    named.filter(|_| distinct.len() == objects.len()).unwrap_or_else(|| (1..=objects.len() as u64).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_keep_the_numbers_of_their_files() {
+        let named = |names: &[&str]| names.iter().map(|n| ((*n).to_owned(), ())).collect::<Vec<_>>();
+        assert_eq!(numbers(&named(&["a/obj_000005.step", "obj_000002.stp"])), [5, 2]);
+        assert_eq!(numbers(&named(&["obj_000005.step", "mug.step"])), [1, 2]);
+        assert_eq!(numbers(&named(&["a/obj_1.step", "b/obj_1.step"])), [1, 2]);
+    }
+}
