@@ -5,12 +5,26 @@ use std::path::PathBuf;
 /// An error after which the program cannot go on: exit code 2.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
+    /// Settings that cannot be used.
     #[error("settings: {0}")]
     Settings(String),
+    /// A file that cannot be read or written.
     #[error("{path}: {source}")]
-    File { path: PathBuf, source: std::io::Error },
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A store that is damaged, of another version or of other settings.
     #[error("store {path}: {why}")]
-    Store { path: PathBuf, why: String },
+    Store {
+        /// The published file.
+        path: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// Anything else that was asked for and cannot be done.
     #[error("{0}")]
     Usage(String),
 }

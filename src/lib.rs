@@ -21,16 +21,29 @@
 //!
 //! # Example
 //!
-//! ```
-//! use symalign::cancel::Cancel;
-//! use symalign::stages::parse::{Options, parse};
+//! Read two models, write one of them aligned, compare the two:
 //!
-//! let bytes = std::fs::read("data-samples/household/stool.step")?;
-//! let parsed = parse(&bytes, &Options::default(), None, &Cancel::new())?;
-//! assert!(parsed.skipped.is_empty());
-//! assert!(parsed.measures.volume > 0.0);
+//! ```
+//! use symalign::settings::{Profile, Settings};
+//! use symalign::{aligned, distance, pipeline};
+//!
+//! let settings = Settings::profile(Profile::Default);
+//! let read = |path: &str| -> Result<_, Box<dyn std::error::Error>> {
+//!     Ok(pipeline::describe(path, std::fs::read(path)?, &settings).0?)
+//! };
+//! let (stool, table) = (read("data-samples/household/stool.step")?, read("data-samples/household/table.step")?);
+//! let parsed = &stool.framed.ranked.posed.parsed;
+//! let pose = aligned::pose(&stool.framed.canonical.frame, &parsed.mesh, &parsed.measures);
+//! aligned::glb(parsed, &pose, &mut std::io::sink())?;
+//! let [a, b] = [&stool, &table].map(|model| model.descriptors[0].magnitude.as_flattened());
+//! assert!(distance::magnitude(a, b) > distance::magnitude(a, a));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! Each stage can be called by itself as well, see [`stages`]; [`search::Rows`] compares a descriptor, or many, with a
+//! whole store.
+
+#![warn(missing_docs)]
 
 pub mod aligned;
 pub mod alignment;
@@ -44,6 +57,7 @@ pub mod geometry;
 pub mod inspect;
 pub mod pipeline;
 pub mod render;
+pub mod rotations;
 pub mod search;
 pub mod settings;
 pub mod stages;

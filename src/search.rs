@@ -47,7 +47,9 @@ impl Kind {
 /// the better order of the second and third view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Name {
+    /// What aligned the models.
     pub frame: Method,
+    /// What is compared.
     pub kind: Kind,
 }
 
@@ -165,6 +167,7 @@ impl<'a> Rows<'a> {
 pub struct Hit {
     /// Its row in the store.
     pub row: usize,
+    /// Its distance, the sum of the three of `views`.
     pub distance: f64,
     /// The distances of the three views.
     pub views: [f64; 3],

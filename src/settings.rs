@@ -75,14 +75,23 @@ pub struct Settings {
     pub workers: BTreeMap<Stage, usize>,
     /// Models that may wait before each stage; a stage that is not named lets 2 wait.
     pub queues: BTreeMap<Stage, usize>,
+    /// When a model is given up.
     pub limits: Limits,
+    /// Thresholds of stage 1.
     pub parse: parse::Options,
+    /// Thresholds of stage 2.
     pub corner_filter: corner_filter::Options,
+    /// Thresholds of stage 3.
     pub pair_match: pair_match::Options,
+    /// Thresholds of stage 4.
     pub isometry: isometry::Options,
+    /// Thresholds of stage 5.
     pub validate: validate::Options,
+    /// Thresholds of stage 6.
     pub merge: merge::Options,
+    /// Thresholds of stage 7.
     pub projection_sweep: projection_sweep::Options,
+    /// Sizes of stage 8.
     pub descriptor: descriptor::Options,
 }
 

@@ -15,8 +15,11 @@ pub enum Packing {
 pub enum Kind {
     /// A single model.
     Model(Packing),
+    /// A tar archive, packed or not.
     Tar(Packing),
+    /// A .zip archive.
     Zip,
+    /// A .7z archive.
     SevenZip,
 }
 

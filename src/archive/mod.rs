@@ -30,7 +30,9 @@ pub struct Limits {
 /// A model's id and bytes, or why it could not be read.
 #[derive(Debug)]
 pub struct Member {
+    /// Its path inside the input, `archive.zip!folder/part.step` for members.
     pub id: String,
+    /// Its bytes unpacked, or why they could not be read.
     pub bytes: std::result::Result<Vec<u8>, String>,
 }
 

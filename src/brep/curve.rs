@@ -11,43 +11,65 @@ use std::f64::consts::TAU;
 pub enum Curve {
     /// origin + t * direction; the direction carries the length of the STEP vector.
     Line {
+        /// The point of parameter 0, mm.
         origin: Point,
+        /// The derivative, mm for each unit of the parameter.
         direction: Vector,
     },
+    /// A circle, by the angle in radians.
     Circle {
+        /// Its centre (or vertex), axes and, as z, the normal of its plane.
         placement: Placement,
+        /// mm.
         radius: f64,
     },
+    /// An ellipse, by the angle in radians.
     Ellipse {
+        /// Its centre (or vertex), axes and, as z, the normal of its plane.
         placement: Placement,
+        /// Semi-axis along x, mm.
         semi_x: f64,
+        /// Semi-axis along y, mm.
         semi_y: f64,
     },
     /// origin + x * focal * t^2 + y * 2 * focal * t.
     Parabola {
+        /// Its centre (or vertex), axes and, as z, the normal of its plane.
         placement: Placement,
+        /// Distance of focus and vertex, mm.
         focal: f64,
     },
     /// origin + x * semi_x * cosh t + y * semi_y * sinh t.
     Hyperbola {
+        /// Its centre (or vertex), axes and, as z, the normal of its plane.
         placement: Placement,
+        /// Semi-axis along x, mm.
         semi_x: f64,
+        /// Semi-axis along y, mm.
         semi_y: f64,
     },
+    /// A B-spline, rational or not.
     Nurbs(NurbsCurve),
+    /// Straight pieces between points, by the number of the point.
     Polyline(Vec<Point>),
     /// The piece of `basis` between two of its parameters; `forward`: from the first to the second along the basis.
     Trimmed {
+        /// The curve it is made from.
         basis: Box<Curve>,
+        /// Parameters of the basis curve at its ends.
         range: [f64; 2],
+        /// Whether it runs in the direction of the basis curve.
         forward: bool,
     },
     /// Pieces one after the other, each with its sense.
     Composite(Vec<(Curve, bool)>),
     /// `basis` moved by `distance` along `reference` x tangent.
     Offset {
+        /// The curve it is made from.
         basis: Box<Curve>,
+        /// How far it is moved, mm.
         distance: f64,
+        /// The direction that, crossed with the tangent, is moved along.
         reference: Vector,
     },
 }

@@ -19,6 +19,7 @@ impl PlacedFaceId {
 /// A tessellated face in place.
 #[derive(Clone, Debug)]
 pub struct MeshFace {
+    /// The face of the model.
     pub face: FaceId,
     /// Position in [`Model::occurrences`].
     pub occurrence: u32,
@@ -38,8 +39,11 @@ pub struct MeshFace {
 /// Triangles of all placed faces; counter-clockwise seen from the face normal's side (outside, for solids).
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
+    /// All points, mm.
     pub points: Vec<Point>,
+    /// Corners of the triangles, as indices of points.
     pub triangles: Vec<[u32; 3]>,
+    /// The faces in place, occurrence by occurrence.
     pub faces: Vec<MeshFace>,
 }
 

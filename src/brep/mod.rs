@@ -48,9 +48,13 @@ id!(/// Index into [`Model::bodies`].
 /// A right-handed placement: an origin and three orthonormal axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
+    /// Where local (0, 0, 0) lies, mm.
     pub origin: Point,
+    /// The first axis, unit.
     pub x: Vector,
+    /// The second axis, unit.
     pub y: Vector,
+    /// The third axis, unit.
     pub z: Vector,
 }
 
@@ -77,16 +81,20 @@ impl Placement {
 pub struct Vertex {
     /// Number of the entity in the file.
     pub entity: u64,
+    /// Where it lies in its part, mm.
     pub point: Point,
 }
 
 /// A bounded piece of a curve from `start` to `end`; `start == end` for closed edges.
 #[derive(Clone, Debug)]
 pub struct Edge {
+    /// Number of the entity in the file.
     pub entity: u64,
     /// `None`: the straight segment between the vertices.
     pub curve: Option<Arc<Curve>>,
+    /// Where it starts.
     pub start: VertexId,
+    /// Where it ends.
     pub end: VertexId,
     /// Whether the edge runs from start to end in the direction of growing curve parameter.
     pub same_sense: bool,
@@ -95,6 +103,7 @@ pub struct Edge {
 /// An edge as one loop uses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeUse {
+    /// The edge.
     pub edge: EdgeId,
     /// Whether the loop runs along the edge from its start to its end.
     pub forward: bool,
@@ -106,7 +115,9 @@ pub struct EdgeUse {
 /// on the left. Files break this rule; who needs it must check.
 #[derive(Clone, Debug)]
 pub struct FaceLoop {
+    /// Number of the entity in the file.
     pub entity: u64,
+    /// The edges in order, each starting where the one before ends.
     pub uses: Vec<EdgeUse>,
     /// The vertex of a vertex loop (then `uses` is empty).
     pub pole: Option<VertexId>,
@@ -118,7 +129,12 @@ pub struct FaceLoop {
 #[derive(Clone, Debug)]
 pub enum FaceGeometry {
     /// A surface trimmed by loops; `same_sense`: the face normal is the surface normal S_u x S_v, else opposite to it.
-    Trimmed { surface: Arc<Surface>, same_sense: bool },
+    Trimmed {
+        /// What is trimmed.
+        surface: Arc<Surface>,
+        /// Whether the face has the surface's normal.
+        same_sense: bool,
+    },
     /// Triangles given by the file itself (AP242 tessellated geometry).
     Faceted(Arc<Facets>),
 }
@@ -126,14 +142,18 @@ pub enum FaceGeometry {
 /// A triangle set; triangles run counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
+    /// mm.
     pub points: Vec<Point>,
+    /// Corners, as indices of points.
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// A face of the B-rep.
 #[derive(Clone, Debug)]
 pub struct Face {
+    /// Number of the entity in the file.
     pub entity: u64,
+    /// What it is made of.
     pub geometry: FaceGeometry,
     /// Empty: the whole surface (a sphere or torus without bounds).
     pub loops: Vec<FaceLoop>,
@@ -144,16 +164,20 @@ pub struct Face {
 /// A connected set of faces of one body.
 #[derive(Clone, Debug)]
 pub struct Shell {
+    /// Number of the entity in the file.
     pub entity: u64,
     /// Whether the file says that the shell is closed.
     pub closed: bool,
+    /// Its faces.
     pub faces: Vec<FaceId>,
 }
 
 /// A solid (its first shell is the outer one, others are voids) or a sheet body.
 #[derive(Clone, Debug)]
 pub struct Body {
+    /// Number of the entity in the file.
     pub entity: u64,
+    /// Whether the file says that it encloses a volume.
     pub solid: bool,
     /// Positions in [`Model::shells`].
     pub shells: Vec<u32>,
@@ -165,7 +189,9 @@ pub struct Occurrence {
     /// Name that tells occurrences of one body apart: the entity numbers of the assembly path, joined by `.`;
     /// empty for a body that is not part of an assembly.
     pub path: String,
+    /// The body that is placed.
     pub body: BodyId,
+    /// From the coordinates of the part to those of the model.
     pub placement: Transform,
 }
 
@@ -174,7 +200,9 @@ pub struct Occurrence {
 pub struct FreeCurve {
     /// Number of the entity in the file.
     pub entity: u64,
+    /// The curve, in the coordinates of its part.
     pub curve: Arc<Curve>,
+    /// From the coordinates of the part to those of the model.
     pub placement: Transform,
 }
 
@@ -183,6 +211,7 @@ pub struct FreeCurve {
 pub struct Skipped {
     /// Number of the entity in the file.
     pub entity: u64,
+    /// The reason, for people.
     pub why: String,
 }
 
@@ -193,11 +222,17 @@ pub struct Model {
     pub schema: String,
     /// Millimetres in one length unit of the (first) representation.
     pub unit_mm: f64,
+    /// All vertices, see [`VertexId`].
     pub vertices: Vec<Vertex>,
+    /// All edges, see [`EdgeId`].
     pub edges: Vec<Edge>,
+    /// All faces, see [`FaceId`].
     pub faces: Vec<Face>,
+    /// All shells, body by body.
     pub shells: Vec<Shell>,
+    /// All bodies, see [`BodyId`].
     pub bodies: Vec<Body>,
+    /// Where the bodies lie.
     pub occurrences: Vec<Occurrence>,
     /// Curves beside the faces: they count for the bounding box and nothing else.
     pub free_curves: Vec<FreeCurve>,

@@ -12,8 +12,11 @@ pub const MAX_DEGREE: usize = 25;
 /// A B-spline curve; knots are written out with their multiplicities (control points + degree + 1 of them).
 #[derive(Clone, Debug)]
 pub struct NurbsCurve {
+    /// Degree of the polynomials.
     pub degree: usize,
+    /// Knots with their multiplicities, growing: points + degree + 1 of them.
     pub knots: Vec<f64>,
+    /// Control points, mm.
     pub points: Vec<Point>,
     /// Empty: all weights are 1.
     pub weights: Vec<f64>,
@@ -24,12 +27,17 @@ pub struct NurbsCurve {
 /// A B-spline surface; control point (i, j) is at `points[i * columns + j]`, i along u, j along v.
 #[derive(Clone, Debug)]
 pub struct NurbsSurface {
+    /// Degree in u.
     pub degree_u: usize,
+    /// Degree in v.
     pub degree_v: usize,
+    /// Knots in u with their multiplicities.
     pub knots_u: Vec<f64>,
+    /// Knots in v with their multiplicities.
     pub knots_v: Vec<f64>,
     /// Number of control points along v.
     pub columns: usize,
+    /// Control points, mm.
     pub points: Vec<Point>,
     /// Empty: all weights are 1.
     pub weights: Vec<f64>,

@@ -6,8 +6,11 @@ use crate::geometry::{Point, Vector};
 /// A point on a face with the face normal there (unit, outward for solids).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
+    /// Where it lies, mm.
     pub point: Point,
+    /// The face normal there, unit.
     pub normal: Vector,
+    /// The face it lies on.
     pub face: PlacedFaceId,
 }
 

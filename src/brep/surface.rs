@@ -13,45 +13,64 @@ pub enum Surface {
     Plane(Placement),
     /// origin + radius (cos u x + sin u y) + v z.
     Cylinder {
+        /// Its centre (or a point of its axis) and axes; z is the axis or normal.
         placement: Placement,
+        /// mm; of a cone where z is 0.
         radius: f64,
     },
     /// origin + (radius + v tan half_angle)(cos u x + sin u y) + v z; a zero radius puts the apex at the origin.
     Cone {
+        /// Its centre (or a point of its axis) and axes; z is the axis or normal.
         placement: Placement,
+        /// mm; of a cone where z is 0.
         radius: f64,
+        /// Angle between axis and surface, radians.
         half_angle: f64,
     },
     /// origin + radius cos v (cos u x + sin u y) + radius sin v z.
     Sphere {
+        /// Its centre (or a point of its axis) and axes; z is the axis or normal.
         placement: Placement,
+        /// mm; of a cone where z is 0.
         radius: f64,
     },
     /// origin + (major + minor cos v)(cos u x + sin u y) + minor sin v z.
     Torus {
+        /// Its centre (or a point of its axis) and axes; z is the axis or normal.
         placement: Placement,
+        /// Radius of the circle that the tube runs along, mm.
         major: f64,
+        /// Radius of the tube, mm.
         minor: f64,
     },
+    /// A B-spline surface, rational or not.
     Nurbs(NurbsSurface),
     /// `profile` turned by u about the axis (placement z through its origin); v is the profile's parameter.
     Revolution {
+        /// The curve that is moved.
         profile: Box<Curve>,
+        /// What it turns about: z through the origin.
         axis: Placement,
     },
     /// profile(u) + v direction.
     Extrusion {
+        /// The curve that is moved.
         profile: Box<Curve>,
+        /// Where it is moved to for a parameter of 1, mm.
         direction: Vector,
     },
     /// `basis` moved by `distance` along its unit normal.
     Offset {
+        /// The surface it is made from.
         basis: Box<Surface>,
+        /// How far it is moved along the normal, mm.
         distance: f64,
     },
     /// A rectangle of `basis` (RECTANGULAR_TRIMMED_SURFACE): bounds [u0, u1, v0, v1].
     Rectangular {
+        /// The surface it is made from.
         basis: Box<Surface>,
+        /// Least and greatest u, least and greatest v.
         bounds: [f64; 4],
     },
 }
@@ -59,11 +78,17 @@ pub enum Surface {
 /// A point of a surface with its partial derivatives up to second order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jet {
+    /// The point, mm.
     pub point: Point,
+    /// First derivative in u.
     pub du: Vector,
+    /// First derivative in v.
     pub dv: Vector,
+    /// Second derivative in u.
     pub duu: Vector,
+    /// Mixed derivative.
     pub duv: Vector,
+    /// Second derivative in v.
     pub dvv: Vector,
 }
 
@@ -77,14 +102,37 @@ impl Jet {
 /// The type of a surface with the sizes that stay the same when it is moved or mirrored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SurfaceKind {
+    /// A plane.
     Plane,
-    Cylinder { radius: f64 },
-    Cone { half_angle: f64 },
-    Sphere { radius: f64 },
-    Torus { major: f64, minor: f64 },
+    /// A cylinder.
+    Cylinder {
+        /// mm.
+        radius: f64,
+    },
+    /// A cone.
+    Cone {
+        /// Angle between axis and surface, radians.
+        half_angle: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// mm.
+        radius: f64,
+    },
+    /// A torus.
+    Torus {
+        /// Radius of the circle that the tube runs along, mm.
+        major: f64,
+        /// Radius of the tube, mm.
+        minor: f64,
+    },
+    /// A B-spline surface, rational or not.
     Nurbs,
+    /// A curve turned about an axis, of no simpler kind.
     Revolution,
+    /// A curve moved along a line, of no simpler kind.
     Extrusion,
+    /// Another surface moved along its normal.
     Offset,
 }
 

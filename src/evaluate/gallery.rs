@@ -9,6 +9,7 @@ pub const MISCELLANEOUS: &str = "-1";
 /// A category with its models.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Class {
+    /// Its category.
     pub name: String,
     /// Its models: a range of the gallery.
     pub members: std::ops::Range<usize>,
@@ -31,7 +32,9 @@ impl Class {
 /// All labelled models, class by class (names in byte order), the ids of a class in byte order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Gallery {
+    /// The models, by id.
     pub ids: Vec<String>,
+    /// The classes, in the order of their models.
     pub classes: Vec<Class>,
     /// The class of each model.
     pub class_of: Vec<usize>,

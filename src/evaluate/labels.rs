@@ -17,7 +17,9 @@ pub enum Labels {
 /// A label whose model is not there.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Missing {
+    /// The id of the model.
     pub path: String,
+    /// Its class.
     pub category: String,
     /// Why the model failed; `None` where nothing is known of it.
     pub why: Option<String>,

@@ -21,10 +21,15 @@ const E_CUT: usize = 32;
 /// The measures of one query, or their mean over several. Each is 0 to 1, higher is better.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Scores {
+    /// Nearest neighbour, 0 to 1.
     pub nn: f64,
+    /// First tier, 0 to 1.
     pub ft: f64,
+    /// Second tier, 0 to 1.
     pub st: f64,
+    /// E-measure over the first 32, 0 to 1.
     pub e: f64,
+    /// Discounted cumulative gain over the ideal one, 0 to 1.
     pub dcg: f64,
     /// Average precision; its mean over queries is called mAP.
     #[serde(rename = "map")]
@@ -94,6 +99,7 @@ impl Scores {
 /// Consecutive models of a ranking that are equally far from the query.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Group {
+    /// Number of its models.
     pub size: usize,
     /// Relevant models among them.
     pub relevant: usize,

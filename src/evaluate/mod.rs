@@ -62,14 +62,18 @@ impl Default for Options {
 /// The results of one method: its queries in the order of the gallery, and what they amount to.
 #[derive(Clone, Debug)]
 pub struct MethodResult {
+    /// The method, as `symmetry` or `symmetry:phase`.
     pub name: String,
+    /// The queries in the order of the gallery.
     pub queries: Vec<QueryResult>,
+    /// Means over them.
     pub summary: Summary,
 }
 
 /// The results of all methods on one gallery.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
+    /// Which models were ranked.
     pub gallery: Gallery,
     /// How the gallery came about; empty where [`score`] was called directly.
     pub coverage: Coverage,
@@ -79,7 +83,9 @@ pub struct Evaluation {
     pub chance: Summary,
     /// The results of an ideal ranking; not all measures reach 1.
     pub ceiling: Summary,
+    /// Pairs of methods, tested.
     pub comparisons: Vec<Comparison>,
+    /// How it was evaluated.
     pub options: Options,
 }
 

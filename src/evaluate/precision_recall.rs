@@ -48,7 +48,9 @@ pub(super) fn princeton(precisions: &[f64]) -> [Option<f64>; PRINCETON] {
 /// Means of curves over queries; a level that no query reaches is `None`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct MeanCurves {
+    /// Interpolated precision at recall 0, 0.1 .. 1.
     pub pr11: [Option<f64>; INTERPOLATED],
+    /// Precision at recall 0.05, 0.1 .. 1, as psbPlot has it.
     pub pr20: [Option<f64>; PRINCETON],
 }
 

@@ -43,7 +43,9 @@ impl<F: Fn(usize, usize) -> f64 + Sync> Distances for Pairs<F> {
 
 /// What is evaluated: a method's name and its distances.
 pub struct Entrant<'a> {
+    /// The method.
     pub name: String,
+    /// How far apart the models are by it.
     pub distances: Box<dyn Distances + 'a>,
 }
 
@@ -59,9 +61,11 @@ impl<'a> Entrant<'a> {
 pub struct QueryResult {
     /// Its place in the gallery.
     pub query: usize,
+    /// Its measures.
     pub scores: Scores,
     /// The expected scores over random orders of equally distant models, where these make a difference.
     pub expected: Option<Scores>,
+    /// Its precision over recall.
     pub curves: Curves,
     /// The first hits: places in the gallery and distances.
     pub hits: Vec<(usize, f64)>,

@@ -16,7 +16,9 @@ pub const EXACT: usize = 20;
 /// How much better ranker `a` is than ranker `b`.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Comparison {
+    /// The first method.
     pub a: String,
+    /// The second method.
     pub b: String,
     /// What is compared: "ap", the average precision of each query.
     pub measure: &'static str,
@@ -88,7 +90,9 @@ fn compare(gallery: &Gallery, a: &MethodResult, b: &MethodResult, options: &Opti
 /// What is resampled or flipped as a whole: a query, or a class with the sum of its queries' differences.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
+    /// Of the differences.
     pub sum: f64,
+    /// Their number.
     pub queries: usize,
 }
 

@@ -15,6 +15,7 @@ use std::str::FromStr;
 pub struct Input<'a> {
     /// The models and the methods of our own. Without a store the models are those of the labels.
     pub store: Option<&'a Store>,
+    /// Which models are of one class.
     pub labels: Labels,
     /// Princeton matrices, their rows in the order of the labels.
     pub matrices: Vec<Named>,
@@ -32,7 +33,9 @@ impl<'a> Input<'a> {
 /// A file with the results of a method: "name=FILE", or "FILE", which names the method too.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Named {
+    /// The method.
     pub name: String,
+    /// The file.
     pub path: PathBuf,
 }
 

@@ -11,7 +11,9 @@ pub struct Summary {
     pub micro: Scores,
     /// Means over classes of their means.
     pub macros: Scores,
+    /// Means over all queries.
     pub micro_curves: MeanCurves,
+    /// Means over the classes.
     pub macro_curves: MeanCurves,
     /// The means of each class that is queried, in the gallery's order.
     pub classes: Vec<ClassSummary>,
@@ -20,10 +22,13 @@ pub struct Summary {
 /// The means of one class.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassSummary {
+    /// The category.
     pub name: String,
     /// Its number of models.
     pub size: usize,
+    /// Means over its queries.
     pub scores: Scores,
+    /// The same of the curves.
     pub curves: MeanCurves,
 }
 

@@ -5,7 +5,9 @@ use super::Point;
 /// The smallest box with sides along the coordinate axes that holds all points added; empty at first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
+    /// The least coordinates, mm.
     pub min: Point,
+    /// The greatest coordinates, mm.
     pub max: Point,
 }
 

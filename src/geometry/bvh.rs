@@ -51,6 +51,7 @@ struct Node {
 /// A triangle as the tree holds it.
 #[derive(Clone, Debug)]
 pub struct Triangle {
+    /// Its corners, mm.
     pub corners: [Point; 3],
     /// Unit normal.
     pub normal: Vector,
@@ -61,9 +62,13 @@ pub struct Triangle {
 /// The nearest triangle to a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Nearest {
+    /// The nearest point of the triangle, mm.
     pub point: Point,
+    /// Squared distance, mm^2.
     pub squared: f64,
+    /// Unit normal of the triangle.
     pub normal: Vector,
+    /// The caller's number for it.
     pub id: u32,
 }
 

@@ -6,7 +6,9 @@ use super::{Point, Vector};
 /// the sign of each axis has no meaning, so a frame may be left-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
+    /// Orthonormal, their signs without meaning.
     pub axes: [Vector; 3],
+    /// Where the planes meet, mm.
     pub origin: Point,
 }
 

@@ -5,15 +5,20 @@ use super::{Matrix, Plane, Point, Transform, Vector};
 /// Whether an isometry keeps left and right (`Proper`: rotations, translations) or swaps them (`Improper`: mirrors).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Chirality {
+    /// Keeps left and right.
     Proper,
+    /// Swaps them.
     Improper,
 }
 
 /// p -> rotation * p + translation; the determinant of `rotation` is 1 or -1 as the chirality says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Isometry {
+    /// Orthogonal.
     pub rotation: Matrix,
+    /// mm.
     pub translation: Vector,
+    /// Whether `rotation` turns or mirrors.
     pub chirality: Chirality,
 }
 

@@ -7,7 +7,9 @@ use super::{Isometry, Point, Transform, Vector};
 /// (n, d) and (-n, -d) are the same plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
+    /// Unit.
     pub normal: Vector,
+    /// Signed distance of the origin from the plane, against the normal, mm.
     pub offset: f64,
 }
 

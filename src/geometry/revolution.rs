@@ -6,6 +6,7 @@ use super::{Matrix, Point, Vector};
 /// A line with a direction whose sign has no meaning: the axis of a body or face of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
+    /// A point on it, mm.
     pub point: Point,
     /// Unit.
     pub direction: Vector,

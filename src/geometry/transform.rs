@@ -7,7 +7,9 @@ use super::{Matrix, Point, Vector};
 /// A STEP placement is rigid; a Cartesian transformation operator may also scale or mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
+    /// An orthogonal matrix times a factor.
     pub linear: Matrix,
+    /// mm.
     pub translation: Vector,
 }
 

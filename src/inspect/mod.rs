@@ -16,6 +16,7 @@ use crate::stages::{ModelError, Stage};
 pub struct Inspection {
     /// The model as the user named it; for the members of an archive its id in it.
     pub model: String,
+    /// The model after all stages, or where and why it was lost.
     pub result: std::result::Result<Described, ModelError>,
     /// By stage.
     pub seconds: Seconds,

@@ -22,6 +22,7 @@ use crate::store::{Failure, Hash};
 pub struct Shard {
     /// From 1 to `count`.
     pub index: u64,
+    /// Number of parts.
     pub count: u64,
 }
 

@@ -68,8 +68,11 @@ impl Snapshot {
 
 /// Shows a run's progress.
 pub enum Progress {
+    /// Bars on a terminal.
     Bars(Box<Bars>),
+    /// A line every few seconds.
     Lines(Lines),
+    /// Nothing.
     Silent,
 }
 

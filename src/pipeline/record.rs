@@ -15,8 +15,11 @@ pub fn record(described: &Described) -> ModelRecord {
 
 /// Numbers of solids, faces and edges as placed: what occurs twice counts twice.
 pub struct Counts {
+    /// Placed solids.
     pub solids: usize,
+    /// Placed faces.
     pub faces: usize,
+    /// Edges of placed bodies.
     pub edges: usize,
 }
 

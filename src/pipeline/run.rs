@@ -32,7 +32,9 @@ const SLOWEST: usize = 10;
 
 /// What is asked of a run.
 pub struct Request<'a> {
+    /// Input, store, methods, limits, thresholds.
     pub settings: &'a Settings,
+    /// The part of the inputs to take.
     pub shard: Option<Shard>,
     /// Start over, removing what the store holds.
     pub fresh: bool,
@@ -59,6 +61,7 @@ pub struct Report {
     pub seconds: Seconds,
     /// The models that took longest in this run, longest first: id and seconds.
     pub slowest: Vec<(String, f64)>,
+    /// From start to end.
     pub elapsed: Duration,
 }
 

@@ -18,6 +18,7 @@ use crate::stages::{ModelError, Stage};
 
 /// After parse.
 pub struct Posed {
+    /// B-rep, mesh and measures.
     pub parsed: Parsed,
     /// How the model was moved after reading.
     pub pose: Isometry,
@@ -49,13 +50,17 @@ pub struct Checked {
 
 /// After merge: the outlines have done their work.
 pub struct Ranked {
+    /// The model as read and moved.
     pub posed: Posed,
+    /// Its planes and axes, best first.
     pub symmetries: Symmetries,
 }
 
 /// After projection_sweep.
 pub struct Framed {
+    /// The model with its symmetries.
     pub ranked: Ranked,
+    /// The frame by symmetry, with the areas it was chosen by.
     pub canonical: CanonicalFrame,
     /// One for each method of the run, in its order.
     pub frames: Vec<(Method, Frame)>,
@@ -63,6 +68,7 @@ pub struct Framed {
 
 /// After descriptor.
 pub struct Described {
+    /// The model with its frames.
     pub framed: Framed,
     /// One for each of the frames.
     pub descriptors: Vec<Descriptor>,

@@ -26,13 +26,21 @@ use crate::cancel::Cancelled;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
+    /// Section III: the bytes of a file -> model.
     Parse,
+    /// Section IV.B: corners of the faces.
     CornerFilter,
+    /// Eq. (3): pairs of faces.
     PairMatch,
+    /// Section IV.C: candidate isometries.
     Isometry,
+    /// Section IV.D, eq. (6): validated symmetries.
     Validate,
+    /// Section IV.E, eq. (7): the dominant symmetry.
     Merge,
+    /// Section V: the canonical frame.
     ProjectionSweep,
+    /// Section VI: silhouettes and Fourier descriptors.
     Descriptor,
 }
 
@@ -68,7 +76,9 @@ impl Stage {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 #[error("{}: {why}{}", stage.name(), entity.map(|e| format!(" (#{e})")).unwrap_or_default())]
 pub struct ModelError {
+    /// Where it was lost.
     pub stage: Stage,
+    /// The reason, for people.
     pub why: String,
     /// The entity of the file where it happened, if there is one.
     pub entity: Option<u64>,

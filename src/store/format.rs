@@ -82,11 +82,13 @@ fn method_code(method: Method) -> u32 {
 /// A run of bytes of one kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Section {
+    /// What it holds.
     pub kind: Kind,
     /// `None` for sections that belong to no method.
     pub method: Option<Method>,
     /// From the start of the file.
     pub offset: u64,
+    /// Bytes.
     pub length: u64,
     /// CRC-32 (IEEE) of the bytes.
     pub crc: u32,

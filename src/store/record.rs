@@ -23,9 +23,11 @@ pub const EVIDENCE_KEPT: usize = 64;
 /// A model that was lost, and why.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Failure {
+    /// Its path inside the input.
     pub id: String,
     /// `None` where the bytes could not even be read.
     pub hash: Option<Hash>,
+    /// Where and why it was lost.
     pub error: ModelError,
 }
 
@@ -35,50 +37,69 @@ pub struct Failure {
 pub struct PlaneEvidence {
     /// Unit normal n of the plane n.x = offset.
     pub normal: [f64; 3],
+    /// Of the plane n.x = offset, mm.
     pub offset_mm: f64,
     /// Share of the surface's area whose mirror image lies on the surface, 0 to 1.
     pub coverage: f64,
+    /// Root mean square of the distances of mirrored corners to their images, mm.
     pub residual_mm: f64,
     /// Names of faces that mirror each other: the first [`EVIDENCE_KEPT`] of `pair_count`.
     pub pairs: Vec<(String, String)>,
+    /// All pairs.
     pub pair_count: usize,
     /// Names of faces mapped onto themselves: the first [`EVIDENCE_KEPT`] of `self_count`.
     pub selfs: Vec<String>,
+    /// All faces mapped onto themselves.
     pub self_count: usize,
 }
 
 /// The axis of a body of revolution.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct AxisEvidence {
+    /// A point on the axis, mm.
     pub point_mm: [f64; 3],
+    /// Unit.
     pub direction: [f64; 3],
 }
 
 /// What a model is and what was found in it: the evidence beside its descriptors.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Summary {
+    /// Schema of a STEP file, else format and version.
     pub schema: String,
     /// Millimetres in one length unit of the file.
     pub unit_mm: f64,
+    /// Placed solids.
     pub solids: usize,
+    /// Placed faces.
     pub faces: usize,
+    /// Edges of placed bodies.
     pub edges: usize,
+    /// Triangles of the mesh.
     pub triangles: usize,
+    /// Area of all faces, mm^2.
     pub area_mm2: f64,
+    /// Volume of all solids, mm^3.
     pub volume_mm3: f64,
+    /// Area centroid, mm.
     pub centroid_mm: [f64; 3],
     /// Minimum, then maximum.
     pub bbox_mm: [f64; 6],
     /// Entities left out with the reason: the first [`EVIDENCE_KEPT`] of `skipped_count`.
     pub skipped: Vec<(u64, String)>,
+    /// All entities left out.
     pub skipped_count: usize,
     /// The first [`EVIDENCE_KEPT`] of `warning_count`.
     pub warnings: Vec<String>,
+    /// All warnings.
     pub warning_count: usize,
+    /// How symmetric it is.
     pub label: Label,
     /// Best first: the first [`PLANES_KEPT`] of `plane_count`.
     pub planes: Vec<PlaneEvidence>,
+    /// All planes found.
     pub plane_count: usize,
+    /// The axis of a body of revolution.
     pub axes: Vec<AxisEvidence>,
     /// Which method gave the symmetry frame its first axis.
     pub source: Source,
@@ -93,6 +114,7 @@ pub struct Summary {
 /// A model's pose by one method, described.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
+    /// What aligned it.
     pub method: Method,
     /// Axes row by row, then the origin in mm.
     pub frame: [f64; 12],
@@ -119,6 +141,7 @@ impl Pose {
 /// All that is kept of a model that was done.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ModelRecord {
+    /// The evidence.
     pub summary: Summary,
     /// [`THUMBNAIL`] x [`THUMBNAIL`] grey levels, row by row.
     pub thumbnail: Vec<u8>,

@@ -10,6 +10,7 @@ pub struct Damage {
     pub place: String,
     /// From the start of the file, bytes.
     pub offset: u64,
+    /// Bytes.
     pub length: u64,
 }
 

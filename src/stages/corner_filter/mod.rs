@@ -67,6 +67,7 @@ pub struct Outline {
     pub corners: Vec<Point>,
     /// Arc length of the outer loop, mm.
     pub perimeter: f64,
+    /// Its holes.
     pub inner: Vec<InnerLoop>,
     /// Area of the trimmed surface, mm^2.
     pub area: f64,

@@ -5,6 +5,7 @@ use super::silhouette::Silhouette;
 /// A closed polygon in pixel units, counter-clockwise (first image axis right, second up).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contour {
+    /// Corners in order, in the picture plane.
     pub points: Vec<[f64; 2]>,
 }
 

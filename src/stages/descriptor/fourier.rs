@@ -8,7 +8,9 @@ use super::contour::Contour;
 /// Which half of the view's first axis a contour starts at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
+    /// Where the axis to the right leaves the contour.
     Positive,
+    /// Where its opposite does.
     Negative,
 }
 

@@ -7,6 +7,7 @@ use crate::geometry::{Isometry, Matrix, Plane, Point};
 /// A fitted mirror plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Fit {
+    /// The plane fitted.
     pub plane: Plane,
     /// Mean squared distance of the mirrored points from their images, mm^2.
     pub squared: f64,

@@ -69,11 +69,13 @@ pub enum Source {
 /// A plane in which the model may be symmetric.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidate {
+    /// The plane.
     pub plane: Plane,
     /// Root mean square distance of the mirrored corners from their images, mm.
     pub residual: f64,
     /// Area of the faces that speak for it, times the pairs that this one stands for, mm^2.
     pub weight: f64,
+    /// What suggested it.
     pub source: Source,
     /// Position of the pair in [`Matches::pairs`].
     pub pair: Option<u32>,
@@ -91,7 +93,9 @@ pub struct Repeats {
 /// What the pairs say.
 #[derive(Clone, Debug, Default)]
 pub struct Candidates {
+    /// Candidate planes.
     pub mirrors: Vec<Candidate>,
+    /// Faces that direct isometries map onto others.
     pub repeats: Repeats,
 }
 

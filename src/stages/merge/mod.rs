@@ -106,12 +106,14 @@ pub enum Label {
     NearGlobal,
     /// Coverage >= 0.1.
     Partial,
+    /// Less, or nothing confirmed.
     None,
 }
 
 /// A mirror plane with its evidence.
 #[derive(Clone, Debug)]
 pub struct SymmetryPlane {
+    /// The plane.
     pub plane: Plane,
     /// Surface support: the share of the whole surface's area whose mirror image lies on the surface.
     pub coverage: f64,
@@ -130,8 +132,11 @@ pub struct SymmetryPlane {
 /// The symmetries of a model, best plane first.
 #[derive(Clone, Debug)]
 pub struct Symmetries {
+    /// How much of the surface the best plane maps onto itself.
     pub label: Label,
+    /// Mirror planes, best first.
     pub planes: Vec<SymmetryPlane>,
+    /// The axis of a body of revolution.
     pub axes: Vec<Axis>,
     /// Faces that direct isometries map onto others.
     pub repeats: Repeats,

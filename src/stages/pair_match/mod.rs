@@ -82,9 +82,19 @@ pub enum Order {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Correspondence {
     /// Corner k of the first face to corner `offset` + k (or - k) of the second.
-    Cyclic { offset: u32, order: Order },
+    Cyclic {
+        /// Where the other face's corners start.
+        offset: u32,
+        /// In which direction they run.
+        order: Order,
+    },
     /// Pairs of corner positions, where one face has more corners than the other.
-    Listed { corners: Vec<(u32, u32)>, order: Order },
+    Listed {
+        /// Corner of one face, corner of the other.
+        corners: Vec<(u32, u32)>,
+        /// In which direction they run.
+        order: Order,
+    },
     /// Faces without enough corners: only their centroids (and axes, if they have any).
     Centroids,
 }
@@ -94,6 +104,7 @@ pub enum Correspondence {
 pub struct FacePair {
     /// Positions among the outlines; equal for a face that may be its own image.
     pub faces: [u32; 2],
+    /// Which corner of one face belongs to which of the other.
     pub correspondence: Correspondence,
     /// How many pairs of its bucket this one stands for.
     pub weight: f64,
@@ -132,6 +143,7 @@ impl FacePair {
 /// The matched pairs.
 #[derive(Clone, Debug, Default)]
 pub struct Matches {
+    /// Pairs of outlines, in growing order.
     pub pairs: Vec<FacePair>,
     /// Whether the bound on pairs cut the search short.
     pub truncated: bool,

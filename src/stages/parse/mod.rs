@@ -32,6 +32,7 @@ pub struct Options {
     pub most_occurrences: usize,
     /// The most faces that are read, counted once for each body.
     pub most_faces: usize,
+    /// How finely faces are cut.
     pub tessellation: tessellate::Options,
 }
 
@@ -44,6 +45,7 @@ impl Default for Options {
 /// The B-rep of a file, before its faces are tessellated.
 #[derive(Clone, Debug)]
 pub struct Reading {
+    /// The B-rep.
     pub model: Model,
     /// Entities that were left out, with the reason.
     pub skipped: Vec<Skipped>,
@@ -54,9 +56,11 @@ pub struct Reading {
 /// A model as read: what the later stages work on.
 #[derive(Clone, Debug)]
 pub struct Parsed {
+    /// The B-rep.
     pub model: Model,
     /// The faces of all occurrences, tessellated, in place.
     pub mesh: Mesh,
+    /// Area, volume, centroid, box and size.
     pub measures: Measures,
     /// Entities that were left out, with the reason.
     pub skipped: Vec<Skipped>,

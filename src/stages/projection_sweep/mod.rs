@@ -123,8 +123,11 @@ impl Options {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Source {
+    /// The dominant symmetry plane.
     Symmetry,
+    /// The rectilinear frame, for want of a symmetry.
     Rectilinearity,
+    /// Continuous principal components, for want of both.
     Cpca,
 }
 
@@ -142,10 +145,13 @@ pub struct Sweep {
 /// The canonical pose of a model.
 #[derive(Clone, Debug)]
 pub struct CanonicalFrame {
+    /// The frame.
     pub frame: Frame,
+    /// What gave its first axis.
     pub source: Source,
     /// Projected areas along the three axes, mm^2.
     pub areas: [f64; 3],
+    /// The projected areas that chose the second axis.
     pub sweep: Sweep,
     /// The areas hardly differ with the angle: the second axis is a convention.
     pub axisymmetric: bool,

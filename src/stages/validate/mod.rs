@@ -95,11 +95,13 @@ impl Options {
 /// A plane with the candidates that speak for it.
 #[derive(Clone, Debug)]
 pub struct ValidatedPlane {
+    /// The plane.
     pub plane: Plane,
     /// Root mean square distance of mirrored corners from their images, mm.
     pub residual: f64,
     /// Votes by area, mm^2.
     pub weight: f64,
+    /// What suggested it.
     pub source: Source,
     /// Checked pairs, as positions in [`Matches::pairs`].
     pub pairs: Vec<u32>,
@@ -112,8 +114,11 @@ pub struct ValidatedPlane {
 /// What is left, and the surface it was checked against.
 #[derive(Clone, Debug)]
 pub struct Validated {
+    /// Planes with their coarse support.
     pub planes: Vec<ValidatedPlane>,
+    /// The surface, to measure supports with.
     pub field: SurfaceField,
+    /// Faces that direct isometries map onto others.
     pub repeats: crate::stages::isometry::Repeats,
 }
 
