@@ -1,6 +1,6 @@
 //! `symmetries`.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 use symalign::cancel::Cancel;
 use symalign::error::{Result, RunError};
 use symalign::inspect::{self, Inspection};
@@ -28,10 +28,7 @@ pub fn symmetries(args: &Symmetries) -> Result<Exit> {
         Ok(())
     };
     args.model.iter().try_for_each(|path| inspect::inspect(path, &settings, &mut each))?;
-    let numbers = numbers(&objects);
-    let numbered = numbers.into_iter().zip(objects).map(|(number, (_, object))| (number.to_string(), object));
-    let text = serde_json::to_string_pretty(&Value::Object(numbered.collect::<Map<_, _>>()));
-    let text = text.map_err(|e| RunError::Usage(e.to_string()))? + "\n";
+    let text = lines(&objects);
     match &args.out {
         Some(path) => std::fs::write(path, text).map_err(|e| RunError::file(path, e))?,
         None => super::print(&text)?,
@@ -53,6 +50,13 @@ fn object(model: &str, described: &Described, settings: &Settings) -> Result<Val
     Ok(bop::object(model, parsed, symmetries, &found, options.exact))
 }
 
+/// One JSON object with an object a line.
+fn lines(objects: &[(String, Value)]) -> String {
+    let line = |(number, (_, object)): (u64, &(String, Value))| format!("\"{number}\": {object}");
+    let lines: Vec<_> = numbers(objects).into_iter().zip(objects).map(line).collect();
+    if lines.is_empty() { "{}\n".to_owned() } else { format!("{{\n{}\n}}\n", lines.join(",\n")) }
+}
+
 /// The benchmark names objects by numbers: those of the files where all are called `obj_000001.step` and so on and
 /// differ, else 1, 2, and so on.
 fn numbers<T>(objects: &[(String, T)]) -> Vec<u64> {
@@ -70,6 +74,13 @@ fn numbers<T>(objects: &[(String, T)]) -> Vec<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_object_has_its_line() {
+        let objects = [("a".to_owned(), serde_json::json!({"x": 1})), ("b".to_owned(), serde_json::json!({}))];
+        assert_eq!(lines(&objects), "{\n\"1\": {\"x\":1},\n\"2\": {}\n}\n");
+        assert_eq!(lines(&[]), "{}\n");
+    }
 
     #[test]
     fn objects_keep_the_numbers_of_their_files() {
