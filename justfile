@@ -23,3 +23,7 @@ lint:
 # Benchmarks (ratios in one run).
 bench:
     cargo bench
+
+# Shards on a Slurm of our own on the loopback address (as root, with slurm-wlm and munge installed).
+slurm:
+    contrib/slurm/test.sh

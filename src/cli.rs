@@ -94,6 +94,9 @@ pub struct Run {
     /// Folder that the report is written to
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Append what happens to this file as JSON lines: settings, each model's outcome and seconds, warnings, the end
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -275,6 +278,8 @@ pub enum Store {
 pub enum Format {
     /// NumPy arrays and a list of ids.
     Npy,
+    /// Parquet tables: the models, and the rows of each method.
+    Parquet,
     /// Comma-separated text.
     Csv,
 }

@@ -3,6 +3,7 @@
 pub mod align;
 pub mod eval;
 pub mod inspect;
+mod log;
 pub mod query;
 pub mod run;
 pub mod store;

@@ -14,6 +14,7 @@ use crate::cli::{Exit, Run};
 /// Reads the inputs into the store, and scores retrieval where there are labels.
 pub fn run(args: &Run) -> Result<Exit> {
     let settings = ready(args)?;
+    args.log.as_deref().map_or(Ok(()), super::log::to_file)?;
     let stop = Arc::new(AtomicBool::new(false));
     on_interrupt(Arc::clone(&stop))?;
     let request = Request {
@@ -105,6 +106,7 @@ fn on_interrupt(stop: Arc<AtomicBool>) -> Result<()> {
             // What was committed is on the disk; a torn record is cut off at the next start.
             std::process::exit(Exit::Interrupted.code().into());
         }
+        pipeline::interrupted();
         eprintln!("finishing the models in flight; once more to stop now");
     };
     ctrlc::set_handler(handler).map_err(|e| RunError::Usage(format!("cannot listen for interrupts: {e}")))

@@ -21,6 +21,7 @@ pub fn store(args: &Args) -> Result<Exit> {
             match format {
                 Format::Npy => export::npy(&store, out)?,
                 Format::Csv => export::csv(&store, out)?,
+                Format::Parquet => export::parquet(&store, out)?,
             }
             Ok(Exit::Done)
         }

@@ -10,6 +10,7 @@ mod plan;
 mod progress;
 mod random_pose;
 mod record;
+mod report;
 mod resume;
 mod run;
 mod steps;
@@ -17,15 +18,16 @@ mod worker;
 
 pub use feed::Shard;
 pub use guard::helpers;
-pub use log::by_stage;
-pub use parcel::Seconds;
+pub use log::interrupted;
+pub use parcel::{Seconds, by_stage};
 pub use plan::describe;
 pub use progress::Progress;
 pub use random_pose::random_pose;
 pub use record::{Counts, bbox, point, record, vector};
+pub use report::Report;
 use run::Counters;
 use run::TICK;
-pub use run::{Report, Request, run};
+pub use run::{Request, run};
 pub use steps::{Described, Framed, Posed, Ranked};
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use serde_json::Value;
+
 use crate::cancel::Cancel;
 use crate::stages::{ModelError, Stage};
 use crate::store::Hash;
@@ -29,6 +31,12 @@ pub struct Job {
 
 /// Seconds a model took, stage by stage in the order of [`Stage::ALL`].
 pub type Seconds = [f64; Stage::ALL.len()];
+
+/// Seconds under the names of the stages.
+pub fn by_stage(seconds: &Seconds) -> Value {
+    let named = Stage::ALL.iter().zip(seconds).map(|(stage, s)| (stage.name().to_owned(), (*s).into()));
+    Value::Object(named.collect())
+}
 
 #[derive(Debug, Default)]
 struct Clock {

@@ -49,10 +49,11 @@ impl Snapshot {
     pub fn line(&self) -> String {
         let (models, megabytes) = self.rates();
         let total = self.total.map_or_else(|| format!("{}+", self.found), |total| total.to_string());
-        let left = self.left().map_or_else(String::new, |time| format!(", {} left", HumanDuration(time)));
+        let time = self.left().map_or_else(String::new, |time| format!(", {} to go", HumanDuration(time)));
         let known = if self.known > 0 { format!(", {} known", self.known) } else { String::new() };
+        let unsettled = self.total.unwrap_or(self.found).saturating_sub(self.settled());
         format!(
-            "{} of {total}: {} done, {} failed{known}; {models:.1} models/s, {megabytes:.1} MB/s{left}",
+            "{} of {total}: {} done, {} failed{known}, {unsettled} left; {models:.1} models/s, {megabytes:.1} MB/s{time}",
             self.settled(),
             self.done,
             self.failed
@@ -111,9 +112,9 @@ pub struct Bars {
 impl Default for Bars {
     fn default() -> Self {
         let all = MultiProgress::new();
-        let bar = "{elapsed_precise} [{wide_bar}] {msg}";
+        let bar = "{elapsed_precise} [{wide_bar}] {percent:>3} %\n  {wide_msg}";
         let whole = all.add(ProgressBar::no_length().with_style(style(bar)));
-        let line = || all.add(ProgressBar::no_length().with_style(style("  {msg}")));
+        let line = || all.add(ProgressBar::no_length().with_style(style("  {wide_msg}")));
         let stages = Stage::ALL.iter().map(|_| line()).collect();
         let slowest = line();
         Self { all, whole, stages, slowest }
@@ -182,9 +183,9 @@ mod tests {
             elapsed: Duration::from_secs(10),
             ..Snapshot::default()
         };
-        let expected = "30 of 100: 18 done, 2 failed, 10 known; 2.0 models/s, 5.0 MB/s, 35 seconds left";
+        let expected = "30 of 100: 18 done, 2 failed, 10 known, 70 left; 2.0 models/s, 5.0 MB/s, 35 seconds to go";
         assert_eq!(snapshot.line(), expected);
         let unknown = Snapshot { total: None, known: 0, ..snapshot };
-        assert_eq!(unknown.line(), "20 of 40+: 18 done, 2 failed; 2.0 models/s, 5.0 MB/s");
+        assert_eq!(unknown.line(), "20 of 40+: 18 done, 2 failed, 20 left; 2.0 models/s, 5.0 MB/s");
     }
 }

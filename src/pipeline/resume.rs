@@ -72,7 +72,7 @@ fn check_settings(dir: &Path, theirs: &str, ours: &str) -> Result<()> {
 
 /// Removes the files of a store, and says which.
 fn remove(dir: &Path, notes: &mut Vec<String>) -> Result<()> {
-    for path in [published_path(dir), journal_path(dir), super::log::path(dir)] {
+    for path in [published_path(dir), journal_path(dir)] {
         match std::fs::metadata(&path) {
             Ok(meta) => {
                 std::fs::remove_file(&path).map_err(|e| RunError::file(&path, e))?;

@@ -1,8 +1,7 @@
 //! A run: everything from the inputs to the published store.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::io;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -11,14 +10,14 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, bounded};
 use super::budget::Budget;
 use super::feed::{Feed, Manifest, Shard};
 use super::line::Line;
-use super::log::Log;
-use super::parcel::{Parcel, Seconds};
+use super::log;
+use super::parcel::Parcel;
 use super::progress::{Progress, Snapshot};
+use super::report::{Report, peak_memory};
 use super::resume;
 use super::worker::Bench;
 use crate::error::{Result, RunError};
 use crate::settings::Settings;
-use crate::stages::Stage;
 use crate::store::journal::Journal;
 use crate::store::{Contents, Failure, Hash, ModelRecord, publish};
 
@@ -27,8 +26,6 @@ const GROUP: usize = 64;
 const GROUP_TIME: Duration = Duration::from_secs(1);
 /// Time between two looks at deadlines and progress.
 pub const TICK: Duration = Duration::from_millis(50);
-/// Models listed as slowest.
-const SLOWEST: usize = 10;
 
 /// What is asked of a run.
 pub struct Request<'a> {
@@ -42,27 +39,6 @@ pub struct Request<'a> {
     pub retry_failed: bool,
     /// Set from outside: finish what is in flight, and stop.
     pub stop: &'a AtomicBool,
-}
-
-/// How a run ended.
-#[derive(Debug, Default)]
-pub struct Report {
-    /// Models of the inputs that the store has, computed now or earlier.
-    pub done: usize,
-    /// Models of the inputs that were lost, now or earlier, sorted by id.
-    pub failures: Vec<Failure>,
-    /// Models computed or lost in this run.
-    pub computed: u64,
-    /// Stopped from outside: nothing was published, all that is done is in the journal.
-    pub interrupted: bool,
-    /// What the user should know about the store.
-    pub notes: Vec<String>,
-    /// Seconds of computing in this run, by stage.
-    pub seconds: Seconds,
-    /// The models that took longest in this run, longest first: id and seconds.
-    pub slowest: Vec<(String, f64)>,
-    /// From start to end.
-    pub elapsed: Duration,
 }
 
 /// Counts that several threads keep.
@@ -91,16 +67,20 @@ pub fn run_with(request: &Request, progress: &mut Progress, build: &Build) -> Re
     let settings = request.settings;
     let effective = settings.effective()?;
     let mut opened = resume::open(&settings.store, &effective, request.fresh)?;
-    let mut collector = Collector::new(&mut opened.journal, &settings.store)?;
+    log::started(request, &effective);
+    let mut collector = Collector::new(&mut opened.journal);
     let manifest = stream(request, progress, build, &mut collector)?;
     let mut report = std::mem::take(&mut collector.report);
     report.notes.append(&mut opened.notes);
     report.interrupted = !manifest.complete;
+    manifest.unreadable.iter().for_each(log::unreadable);
     settle(&manifest, &opened.journal, &mut report)?;
     if manifest.complete {
         publish_all(settings, &effective, manifest, &opened.journal, &report.failures)?;
     }
+    report.peak_memory = peak_memory();
     report.elapsed = started.elapsed();
+    log::ended(&report);
     Ok(report)
 }
 
@@ -161,14 +141,13 @@ fn watch(
 /// The other end: keeps outcomes.
 struct Collector<'a> {
     journal: &'a mut Journal,
-    log: Log,
     last_commit: Instant,
     report: Report,
 }
 
 impl<'a> Collector<'a> {
-    fn new(journal: &'a mut Journal, dir: &Path) -> Result<Self> {
-        Ok(Self { journal, log: Log::open(dir)?, last_commit: Instant::now(), report: Report::default() })
+    fn new(journal: &'a mut Journal) -> Self {
+        Self { journal, last_commit: Instant::now(), report: Report::default() }
     }
 
     fn known(&self, retry_failed: bool) -> HashSet<Hash> {
@@ -205,8 +184,8 @@ impl<'a> Collector<'a> {
     fn keep(&mut self, parcel: Parcel<ModelRecord>) -> Result<()> {
         let Parcel { job, load } = parcel;
         self.journal.append(&job.hash, &load)?;
-        self.log.model(&job, load.as_ref().err())?;
-        self.note_times(&job.id, &job.seconds());
+        log::model(&job, &load);
+        self.report.note(&job);
         if self.journal.unsynced() >= GROUP || self.last_commit.elapsed() > GROUP_TIME {
             self.commit()?;
         }
@@ -214,19 +193,11 @@ impl<'a> Collector<'a> {
     }
 
     fn commit(&mut self) -> Result<()> {
+        let outcomes = self.journal.unsynced();
         self.journal.commit()?;
-        self.log.flush()?;
+        log::committed(outcomes);
         self.last_commit = Instant::now();
         Ok(())
-    }
-
-    fn note_times(&mut self, id: &str, seconds: &Seconds) {
-        let report = &mut self.report;
-        report.computed += 1;
-        report.seconds.iter_mut().zip(seconds).for_each(|(sum, s)| *sum += s);
-        report.slowest.push((id.to_owned(), seconds.iter().sum()));
-        report.slowest.sort_by(|a, b| b.1.total_cmp(&a.1));
-        report.slowest.truncate(SLOWEST);
     }
 }
 
@@ -261,34 +232,4 @@ fn publish_all(
         Some(Ok(record)) => Ok(record),
         _ => Err(RunError::Store { path: settings.store.clone(), why: format!("the journal lost {id}") }),
     })
-}
-
-impl Report {
-    /// The end of a run in words: counts, failures by reason, times by stage, slowest models.
-    pub fn summary(&self) -> String {
-        let mut lines = self.notes.clone();
-        let elapsed = self.elapsed.as_secs_f64();
-        lines.push(format!(
-            "{} models done, {} failed; {} computed in {elapsed:.1} s",
-            self.done,
-            self.failures.len(),
-            self.computed
-        ));
-        let mut reasons: BTreeMap<(Stage, &str), usize> = BTreeMap::new();
-        for failure in &self.failures {
-            *reasons.entry((failure.error.stage, &failure.error.why)).or_default() += 1;
-        }
-        let mut reasons: Vec<_> = reasons.into_iter().collect();
-        reasons.sort_by_key(|((stage, why), count)| (std::cmp::Reverse(*count), *stage, why.to_owned()));
-        lines.extend(
-            reasons.iter().map(|((stage, why), count)| format!("  failed {count} times: {}: {why}", stage.name())),
-        );
-        if self.computed > 0 {
-            let times = Stage::ALL.iter().zip(self.seconds).map(|(stage, s)| format!("{} {s:.1} s", stage.name()));
-            lines.push(format!("computing time: {}", times.collect::<Vec<_>>().join(", ")));
-            lines.push("slowest models:".into());
-            lines.extend(self.slowest.iter().map(|(id, seconds)| format!("  {seconds:7.2} s  {id}")));
-        }
-        lines.join("\n")
-    }
 }

@@ -1,0 +1,66 @@
+//! Stores for other tools: NumPy arrays, Parquet and CSV.
+
+mod csv;
+mod npy;
+mod parquet;
+
+use std::path::Path;
+
+use serde::Serialize;
+
+pub use self::csv::csv;
+pub use self::npy::npy;
+pub use self::parquet::parquet;
+
+use super::Store;
+use crate::alignment::Method;
+use crate::error::{Result, RunError};
+
+/// What the tables of models tell of one.
+#[derive(Serialize)]
+struct Facts {
+    id: String,
+    hash: String,
+    label: String,
+    coverage: f64,
+    solids: u64,
+    faces: u64,
+    triangles: u64,
+    area_mm2: f64,
+    volume_mm3: f64,
+    source: String,
+}
+
+impl Facts {
+    fn of(store: &Store, i: usize) -> Result<Self> {
+        let s = store.summary(i)?;
+        Ok(Self {
+            id: store.id(i).to_owned(),
+            hash: blake3::Hash::from_bytes(store.hash(i)).to_string(),
+            label: name_of(&s.label)?,
+            coverage: s.planes.first().map_or(0.0, |plane| plane.coverage),
+            solids: s.solids as u64,
+            faces: s.faces as u64,
+            triangles: s.triangles as u64,
+            area_mm2: s.area_mm2,
+            volume_mm3: s.volume_mm3,
+            source: name_of(&s.source)?,
+        })
+    }
+}
+
+/// The name of a unit variant, as JSON has it.
+fn name_of<T: Serialize>(value: &T) -> Result<String> {
+    let json = serde_json::to_value(value).map_err(|e| RunError::Usage(e.to_string()))?;
+    Ok(json.as_str().unwrap_or_default().to_owned())
+}
+
+/// The 12 numbers of the frame of model `i`.
+fn frame(store: &Store, method: Method, i: usize) -> Result<[f64; 12]> {
+    let frame = store.frame(method, i).ok_or_else(|| store.error(format!("no frame of {}", store.id(i))))?;
+    Ok(super::record::frame_numbers(&frame))
+}
+
+fn make(dir: &Path) -> Result<()> {
+    std::fs::create_dir_all(dir).map_err(|e| RunError::file(dir, e))
+}
