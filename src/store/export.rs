@@ -17,11 +17,11 @@ pub fn npy(store: &Store, dir: &Path) -> Result<()> {
         let name = method.name();
         let arrays = [("magnitude", store.magnitudes(method), MAGNITUDES), ("phase", store.phases(method), PHASES)];
         for (kind, rows, columns) in arrays {
-            let bytes = rows.unwrap_or_default().iter().flat_map(|x| x.to_le_bytes());
+            let bytes = rows?.iter().flat_map(|x| x.to_le_bytes());
             array(&dir.join(format!("{name}.{kind}.npy")), "<f4", &[n, columns], bytes)?;
         }
-        let frames = (0..n).filter_map(|i| store.frame(method, i));
-        let numbers = frames.flat_map(|frame| super::record::frame_numbers(&frame));
+        let frames = (0..n).map(|i| store.frame(method, i)).collect::<Result<Vec<_>>>()?;
+        let numbers = frames.iter().flat_map(super::record::frame_numbers);
         array(&dir.join(format!("{name}.frame.npy")), "<f8", &[n, 12], numbers.flat_map(f64::to_le_bytes))?;
     }
     let ids: String = (0..n).map(|i| format!("{}\n", store.id(i))).collect();
@@ -54,7 +54,7 @@ pub fn csv(store: &Store, dir: &Path) -> Result<()> {
     for &method in store.methods() {
         let path = dir.join(format!("{}.magnitude.csv", method.name()));
         let mut table = writer(&path)?;
-        for (i, row) in store.magnitudes(method).unwrap_or_default().chunks_exact(MAGNITUDES).enumerate() {
+        for (i, row) in store.magnitudes(method)?.chunks_exact(MAGNITUDES).enumerate() {
             let numbers = row.iter().map(f32::to_string);
             let record = std::iter::once(store.id(i).to_owned()).chain(numbers);
             table.write_record(record).map_err(|e| csv_error(&path, e))?;
