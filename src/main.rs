@@ -9,6 +9,10 @@ use clap::Parser;
 
 use cli::{Cli, Command, Exit};
 
+/// Counts what each model takes, for the setting `limits.model_memory_mb`.
+#[global_allocator]
+static MEMORY: symalign::memory::Counting = symalign::memory::Counting;
+
 fn main() -> ExitCode {
     let ended = match Cli::parse().command {
         Command::Run(args) => commands::run::run(&args),
