@@ -218,7 +218,7 @@ fn signalled(dir: &Path, signals: &[&str]) -> Output {
         std::thread::sleep(Duration::from_millis(2));
     }
     for signal in signals {
-        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        assert!(Command::new("kill").arg(signal).arg(child.id().to_string()).status().unwrap().success());
         std::thread::sleep(Duration::from_millis(20));
     }
     child.wait_with_output().unwrap()
