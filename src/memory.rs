@@ -4,10 +4,10 @@
 //! have taken and not given back; elsewhere all accounts say what was put on them only. A stage that lets other
 //! threads help wraps their part in [`Account::within`].
 //!
-//! This holds one of the two uses of `unsafe` of the crate (the other one is the store's map): an allocator cannot be
-//! written without. Cost: one addition for each piece of memory taken or given back.
+//! This holds the uses of `unsafe` of the crate beside the store's map: an allocator cannot be written, nor the
+//! system's be told anything, without. Cost: one addition for each piece of memory taken or given back.
 
-use std::alloc::{GlobalAlloc, Layout, System};
+use std::alloc::{GlobalAlloc, Layout};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
@@ -96,56 +96,71 @@ impl Drop for Back {
     }
 }
 
-/// The system's allocator, counting.
-pub struct Counting;
+/// An allocator, counting.
+pub struct Counting<A>(pub A);
 
-impl Counting {
-    fn count(bytes: i64) {
-        if let Some(counter) = COUNTERS.get(CURRENT.get()) {
-            counter.bytes.fetch_add(bytes, Ordering::Relaxed);
-        }
+fn count(bytes: i64) {
+    if let Some(counter) = COUNTERS.get(CURRENT.get()) {
+        counter.bytes.fetch_add(bytes, Ordering::Relaxed);
     }
 }
 
-// SAFETY: every call is passed on to the system's allocator as it came; counting takes no memory and cannot panic (the
+/// From this size on, bytes, a piece of memory is the system's again as soon as it is free.
+#[cfg(target_env = "gnu")]
+const LARGE: i32 = 128 << 10;
+
+/// Has large pieces of memory given back as soon as they are free. Left alone, glibc keeps for each thread that once
+/// freed a large piece pieces of up to that size, and a run of large models comes to twice the memory.
+pub fn give_back_large_pieces() {
+    // SAFETY: sets two numbers of the allocator.
+    #[cfg(target_env = "gnu")]
+    #[allow(unsafe_code)]
+    unsafe {
+        libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE);
+        libc::mallopt(libc::M_TRIM_THRESHOLD, LARGE);
+    }
+}
+
+// SAFETY: every call is passed on to the other allocator as it came; counting takes no memory and cannot panic (the
 // thread's variable has no destructor and is there from the thread's start to its end).
 #[allow(unsafe_code)]
-unsafe impl GlobalAlloc for Counting {
+unsafe impl<A: GlobalAlloc> GlobalAlloc for Counting<A> {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        Self::count(layout.size() as i64);
-        unsafe { System.alloc(layout) }
+        count(layout.size() as i64);
+        unsafe { self.0.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
-        Self::count(layout.size() as i64);
-        unsafe { System.alloc_zeroed(layout) }
+        count(layout.size() as i64);
+        unsafe { self.0.alloc_zeroed(layout) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        Self::count(-(layout.size() as i64));
-        unsafe { System.dealloc(memory, layout) }
+        count(-(layout.size() as i64));
+        unsafe { self.0.dealloc(memory, layout) }
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        Self::count(size as i64 - layout.size() as i64);
-        unsafe { System.realloc(memory, layout, size) }
+        count(size as i64 - layout.size() as i64);
+        unsafe { self.0.realloc(memory, layout, size) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::alloc::System;
 
     /// Takes and gives back through the counting allocator, which is not the test program's.
     fn taken(bytes: usize) -> impl FnOnce() {
         let layout = Layout::array::<u8>(bytes).unwrap();
         // SAFETY: the layout is not empty, and what is given back was taken with it.
         #[allow(unsafe_code)]
-        let memory = unsafe { Counting.alloc(layout) } as usize;
+        let memory = unsafe { Counting(System).alloc(layout) } as usize;
         move || {
             #[allow(unsafe_code)]
             unsafe {
-                Counting.dealloc(memory as *mut u8, layout);
+                Counting(System).dealloc(memory as *mut u8, layout);
             }
         }
     }

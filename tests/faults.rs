@@ -47,8 +47,8 @@ fn failure(dir: &Path, id: &str) -> String {
 fn a_disk_that_fills_up_stops_the_run_and_costs_nothing_that_was_done() {
     let dir = tempfile::tempdir().unwrap();
     archive(dir.path());
-    // Files may not grow beyond 16 kB: room for the first models.
-    let limited = "trap '' XFSZ; ulimit -f 32; exec \"$0\" \"$@\"";
+    // Files may not grow beyond 96 blocks of 512 bytes: room for the first models.
+    let limited = "trap '' XFSZ; ulimit -f 96; exec \"$0\" \"$@\"";
     let mut shell = Command::new("sh");
     shell.current_dir(dir.path()).args(["-c", limited, env!("CARGO_BIN_EXE_symalign")]).args(RUN);
     let output = shell.output().unwrap();
