@@ -141,7 +141,8 @@ fn a_model_of_the_store_is_its_own_nearest() {
         assert!(hits.windows(2).all(|pair| pair[0].distance <= pair[1].distance));
         assert!((hits[1].views.iter().sum::<f64>() - hits[1].distance).abs() < 1e-12);
         let page = folder.path().join("page.html");
-        let asked = Asked { model: "<mine>.step", thumbnail: Some(store.thumbnail(5)), method: &name.to_string() };
+        let asked =
+            Asked { model: "<mine>.step", thumbnail: Some(store.thumbnail(5).unwrap()), method: &name.to_string() };
         search::write_page(&page, &store, &asked, &hits).unwrap();
         let page = std::fs::read_to_string(page).unwrap();
         assert_eq!(page.matches("data:image/png;base64,").count(), 5);

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use tiny_skia::{Color, Paint as Fill, Pixmap, PremultipliedColorU8, Rect, Transform};
 
 use crate::brep::PlacedFaceId;
+use crate::cancel::Cancel;
 use crate::geometry::{Frame, Plane, Point};
 use crate::stages::descriptor::silhouette::Silhouette;
 use crate::stages::merge::{Label, Symmetries};
@@ -76,7 +77,8 @@ pub fn symmetry(parsed: &Parsed, symmetries: &Symmetries, frame: &Frame) -> Pixm
     }
     let sheet = plane.map(|plane| sheet(parsed, frame, 0, &plane));
     let also = sheet.map(Vec::from).unwrap_or_default();
-    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, also: &also };
+    let scene =
+        Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, also: &also, cancel: &Cancel::new() };
     let mut canvas = shaded(&scene, &|id| paints[id.index()], SIDE);
     if let Some(corners) = sheet {
         lay(&mut canvas, corners, SLATE);
@@ -96,7 +98,14 @@ pub fn frame(parsed: &Parsed, frame: &Frame) -> Pixmap {
     let tips = [0, 1, 2].map(|i| tip(parsed, frame, i, AXIS));
     let names = [0, 1, 2].map(|i| tip(parsed, frame, i, 1.6 * AXIS));
     let also: Vec<_> = sheets.iter().flatten().chain(&names).copied().collect();
-    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane: None, also: &also };
+    let scene = Scene {
+        mesh: &parsed.mesh,
+        measures: &parsed.measures,
+        frame,
+        plane: None,
+        also: &also,
+        cancel: &Cancel::new(),
+    };
     let mut canvas = shaded(&scene, &|_| Paint::Plain(GREY), SIDE);
     for (corners, colour) in sheets.into_iter().zip(PLANES) {
         lay(&mut canvas, corners, colour);

@@ -1,4 +1,5 @@
 //! A published store of made-up models: classes are clouds of descriptors, pictures are discs and squares.
+#![allow(dead_code)] // each test program uses its part
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,8 +30,6 @@ pub fn store(dir: &Path) {
     std::fs::create_dir_all(dir).unwrap();
     let models: Vec<_> =
         CLASSES.iter().flat_map(|&(class, n)| (0..n).map(move |i| format!("{class}/{i:02}.step"))).collect();
-    let failure =
-        |id: &str, why: &str| Failure { id: id.into(), hash: None, error: ModelError::at(Stage::Parse, 42, why) };
     let contents = Contents {
         settings: "profile = \"default\"\n",
         methods: &METHODS,
@@ -43,6 +42,11 @@ pub fn store(dir: &Path) {
     std::fs::write(dir.join("labels.csv"), format!("path,category,source\n{labels}")).unwrap();
 }
 
+/// A model that was lost.
+pub fn failure(id: &str, why: &str) -> Failure {
+    Failure { id: id.into(), hash: None, error: ModelError::at(Stage::Parse, 42, why) }
+}
+
 /// A number from 0 to 1 that looks random.
 fn noise(seed: usize) -> f32 {
     let mixed = (seed as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -50,7 +54,8 @@ fn noise(seed: usize) -> f32 {
     (mixed >> 40) as f32 / (1u64 << 24) as f32
 }
 
-fn record(id: &str) -> ModelRecord {
+/// The record of one of its models.
+pub fn record(id: &str) -> ModelRecord {
     let (class, file) = id.split_once('/').unwrap();
     let kind = CLASSES.iter().position(|(name, _)| *name == class).unwrap();
     let number: usize = file[..2].parse().unwrap();

@@ -130,13 +130,13 @@ fn face_meshes(context: &Context, most: usize) -> Result<Vec<Result<FaceMesh, St
         // Asked afterwards, too: what a cancelled face says means nothing.
         context.cancel.check().map(|()| mesh)
     };
-    let faces = &context.model.faces;
+    let (faces, account) = (&context.model.faces, context.cancel.account());
     let (mut meshes, mut triangles) = (Vec::with_capacity(faces.len()), 0);
     for (batch, references) in faces.chunks(BATCH).zip(context.reference.chunks(BATCH)) {
         let made: Vec<_> = if faces.len() < PARALLEL_FACES {
             batch.iter().zip(references).map(one).collect::<Result<_, _>>()?
         } else {
-            batch.par_iter().zip(references).map(one).collect::<Result<_, _>>()?
+            batch.par_iter().zip(references).map(|face| account.within(|| one(face))).collect::<Result<_, _>>()?
         };
         triangles += made.iter().flatten().map(|mesh| mesh.triangles.len()).sum::<usize>();
         meshes.extend(made);

@@ -143,7 +143,7 @@ fn shown(evaluation: &Evaluation, store: &Store, model: usize) -> Result<Model> 
     Ok(Model {
         id: gallery.ids[model].clone(),
         class: gallery.class(model).name.clone(),
-        picture: data_uri(&grey_png(store.thumbnail(row), THUMBNAIL)),
+        picture: data_uri(&grey_png(store.thumbnail(row)?, THUMBNAIL)),
         symmetry: in_words(&summary),
         plane: plane(&summary),
     })

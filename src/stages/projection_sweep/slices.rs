@@ -52,7 +52,7 @@ impl Slices {
         let cut = |b: &Range<usize>| cancel.check().map(|()| wire.cut(b.clone()));
         let parts: Vec<_> = match blocks.as_slice() {
             [one] => vec![cut(one)?],
-            many => many.par_iter().map(cut).collect::<Result<_, _>>()?,
+            many => many.par_iter().map(|b| cancel.account().within(|| cut(b))).collect::<Result<_, _>>()?,
         };
         Ok(Self { thickness, slices: parts.into_iter().flatten().collect() })
     }
@@ -64,9 +64,9 @@ impl Shadows for Slices {
         let mut areas = vec![0.0; angles.len()];
         let mut walkers = Vec::new();
         for slice in &self.slices {
-            cancel.check()?;
             slice.start(directions[0], &mut walkers);
             for (area, &direction) in areas.iter_mut().zip(&directions) {
+                cancel.check()?;
                 *area += self.thickness * shadow_length(&slice.points, &mut walkers, direction);
             }
         }
