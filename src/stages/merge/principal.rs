@@ -114,11 +114,11 @@ impl Step {
         let centroid = merger.parsed.measures.centroid;
         let size = merger.parsed.measures.tolerance.size();
         let mut step = Self { basis, matrix: Matrix::zeros(), right: Vector::zeros(), squared: 0.0, met: 0 };
+        let mut guess = 0;
         for sample in field.samples(round) {
             let image = plane.reflect(&sample.point);
             let normal = plane.reflect_vector(&sample.normal);
-            let accept = |t: &crate::geometry::bvh::Triangle| field.agree(&t.normal, &normal);
-            let Some(hit) = field.tree().nearest_within(&image, radius, accept) else { continue };
+            let Some(hit) = field.nearest((&image, &normal), radius, &mut guess, |_| true) else { continue };
             let error = hit.normal.dot(&(image - hit.point));
             // How the error changes as the normal tilts along the basis and the offset grows.
             let height = plane.signed_distance(&sample.point);

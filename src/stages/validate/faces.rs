@@ -120,13 +120,10 @@ impl<'a> FaceSamples<'a> {
         let faces = &self.outlines[b as usize].faces;
         let (near, far) = (self.options.distance_95 * self.size, self.options.distance_max * self.size);
         let samples = self.of(a);
-        let mut outside = 0;
+        let (mut outside, mut guess) = (0, 0);
         for (p, n) in samples.iter() {
             let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
-            let accept = |t: &crate::geometry::bvh::Triangle| {
-                faces.iter().any(|f| f.0 == t.id) && field.agree(&t.normal, &normal)
-            };
-            match field.tree().nearest_within(&image, far, accept) {
+            match field.nearest((&image, &normal), far, &mut guess, |f| faces.contains(&f)) {
                 None => return false,
                 Some(nearest) => outside += usize::from(nearest.squared > near * near),
             }

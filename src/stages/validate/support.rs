@@ -3,7 +3,8 @@
 use crate::brep::PlacedFaceId;
 use crate::brep::sample::{Sample, sample_mesh};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::bvh::Bvh;
+use crate::geometry::bvh::{Around, Bvh, Nearest};
+use crate::geometry::sides::Neighbours;
 use crate::geometry::{Isometry, Point, Vector};
 use crate::stages::parse::Parsed;
 
@@ -23,6 +24,8 @@ pub struct SurfaceField {
     radius: f64,
     /// Least cosine between normals that agree.
     cosine: f64,
+    /// Where normals that agree point, roughly.
+    agreeing: Neighbours,
     /// Whether the faces have an outside; without it, opposite normals agree too.
     oriented: bool,
 }
@@ -55,17 +58,13 @@ impl SurfaceField {
         let rounds = [upto(0), upto(1), upto(2)];
         let samples = order.iter().map(|&i| samples[i]).collect();
         let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
-        Self { tree, samples, rounds, radius: parsed.measures.tolerance.length(share), cosine, oriented }
+        let (radius, agreeing) = (parsed.measures.tolerance.length(share), Neighbours::within(cosine, !oriented));
+        Self { tree, samples, rounds, radius, cosine, agreeing, oriented }
     }
 
     /// The samples of a round and those before it.
     pub fn samples(&self, round: Round) -> &[Sample] {
         &self.samples[..self.rounds[round as usize]]
-    }
-
-    /// The triangles, each under the number of its placed face.
-    pub fn tree(&self) -> &Bvh {
-        &self.tree
     }
 
     /// Distance within which a point lies on the surface, mm.
@@ -79,13 +78,24 @@ impl SurfaceField {
         cosine >= self.cosine || (!self.oriented && -cosine >= self.cosine)
     }
 
-    /// Whether the surface has a point near `p` with this normal.
-    pub fn holds(&self, p: &Point, normal: &Vector) -> bool {
-        self.tree.any_within(p, self.radius, |t| self.agree(&t.normal, normal))
+    /// The point of the surface nearest to `p` of those with this normal on faces that `accept` takes, if one is within
+    /// `radius`. `guess` as in [`Bvh::nearest_within`].
+    pub fn nearest(
+        &self,
+        (p, normal): (&Point, &Vector),
+        radius: f64,
+        guess: &mut u32,
+        accept: impl Fn(PlacedFaceId) -> bool,
+    ) -> Option<Nearest> {
+        let around = Around { point: p, radius, sides: self.agreeing.of(normal) };
+        self.tree.nearest_within(&around, guess, |t| self.agree(&t.normal, normal) && accept(PlacedFaceId(t.id)))
     }
 
-    fn maps(&self, isometry: &Isometry, sample: &Sample) -> bool {
-        self.holds(&isometry.apply(&sample.point), &(isometry.rotation * sample.normal))
+    /// Whether the isometry maps a sample onto the surface. `guess` as in [`Bvh::any_within`].
+    fn maps(&self, isometry: &Isometry, sample: &Sample, guess: &mut u32) -> bool {
+        let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
+        let around = Around { point: &p, radius: self.radius, sides: self.agreeing.of(&normal) };
+        self.tree.any_within(&around, guess, |t| self.agree(&t.normal, &normal))
     }
 
     /// The share of the samples that `isometry` maps onto the surface, 0 to 1.
@@ -108,10 +118,10 @@ impl SurfaceField {
     }
 
     fn hits(&self, isometry: &Isometry, samples: &[Sample], cancel: &Cancel) -> Result<usize, Cancelled> {
-        let mut hits = 0;
+        let (mut hits, mut guess) = (0, 0);
         for chunk in samples.chunks(4096) {
             cancel.check()?;
-            hits += chunk.iter().filter(|s| self.maps(isometry, s)).count();
+            hits += chunk.iter().filter(|s| self.maps(isometry, s, &mut guess)).count();
         }
         Ok(hits)
     }
@@ -119,11 +129,11 @@ impl SurfaceField {
     /// The coarse support, or `None` as soon as it is (with three standard deviations) below `needed`.
     pub fn reaches(&self, isometry: &Isometry, needed: f64) -> Option<f64> {
         let samples = self.samples(Round::Coarse);
-        let mut hits = 0;
+        let (mut hits, mut guess) = (0, 0);
         // A step coprime to most counts spreads also the first few samples over the whole surface.
         let step = spread_step(samples.len());
         for n in 1..=samples.len() {
-            hits += usize::from(self.maps(isometry, &samples[n * step % samples.len()]));
+            hits += usize::from(self.maps(isometry, &samples[n * step % samples.len()], &mut guess));
             if n >= 16 && n % 8 == 0 {
                 let share = hits as f64 / n as f64;
                 let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();
