@@ -25,8 +25,8 @@ impl Bounds {
 
     fn join(&mut self, other: &Self) {
         for axis in 0..3 {
-            self.low[axis] = self.low[axis].min(other.low[axis]);
-            self.high[axis] = self.high[axis].max(other.high[axis]);
+            self.low[axis] = lesser(self.low[axis], other.low[axis]);
+            self.high[axis] = greater(self.high[axis], other.high[axis]);
         }
         self.sides |= other.sides;
     }
@@ -48,6 +48,15 @@ impl Bounds {
         let [a, b, c] = std::array::from_fn(|i| self.high[i] - self.low[i]);
         a * b + b * c + c * a
     }
+}
+
+/// The lesser of two numbers: one instruction, where `f32::min` also looks for what is none.
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// Adds the node of all items, of which the first is number `first`, and the nodes below it.
@@ -90,7 +99,7 @@ fn cut(items: &mut [Item], level: usize) -> usize {
     for item in items.iter() {
         for axis in 0..3 {
             let middle = item.bounds.middle(axis);
-            (low[axis], high[axis]) = (low[axis].min(middle), high[axis].max(middle));
+            (low[axis], high[axis]) = (lesser(low[axis], middle), greater(high[axis], middle));
         }
     }
     let extent: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);

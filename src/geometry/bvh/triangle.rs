@@ -38,6 +38,7 @@ pub fn nearest_on_triangle(p: &Point, [a, b, c]: &[Point; 3]) -> Point {
 /// A triangle as the tree holds it.
 #[derive(Clone, Debug)]
 pub struct Triangle {
+    /// Its corners, mm.
     pub corners: [Point; 3],
     /// Unit normal.
     pub normal: Vector,
@@ -62,6 +63,44 @@ impl Triangle {
         let point = nearest_on_triangle(p, &self.corners);
         let squared = (point - p).norm_squared();
         (squared <= limit).then_some((squared, point))
+    }
+}
+
+/// What a triangle lies behind, in the single precision of the tree: three planes through its sides, at right angles to
+/// it, and its own plane, of which it is neither before nor behind. Tells that most triangles are too far away at a
+/// fraction of the price of their distance.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(super) struct Slab {
+    normals: [[f32; 4]; 3],
+    offsets: [f32; 4],
+}
+
+impl Slab {
+    pub fn of(triangle: &Triangle, centre: &Point, shrink: f64) -> Self {
+        let corners = triangle.corners.map(|p| (p - centre) * shrink);
+        let mut slab = Self { normals: [[0.0; 4]; 3], offsets: [0.0; 4] };
+        for i in 0..4 {
+            let along = corners[(i + 1) % 3] - corners[i % 3];
+            let normal = if i == 3 { Some(triangle.normal) } else { along.cross(&triangle.normal).try_normalize(0.0) };
+            // A side without length bounds nothing.
+            let Some(normal) = normal else { continue };
+            (0..3).for_each(|axis| slab.normals[axis][i] = normal[axis] as f32);
+            slab.offsets[i] = normal.dot(&corners[i % 3]) as f32;
+        }
+        slab
+    }
+
+    /// Whether the triangle is farther from `p` than `reach` for certain.
+    #[inline]
+    pub fn is_beyond(&self, p: &[f32; 3], reach: f32) -> bool {
+        let mut heights = [0.0; 4];
+        for (i, height) in heights.iter_mut().enumerate() {
+            let [x, y, z] = &self.normals;
+            *height = x[i] * p[0] + y[i] * p[1] + z[i] * p[2] - self.offsets[i];
+        }
+        let [a, b, c, d] = heights;
+        (a > reach) | (b > reach) | (c > reach) | (d.abs() > reach)
     }
 }
 
