@@ -166,7 +166,7 @@ impl Bvh {
 
     /// Whether some triangle that `accept` takes is there. The triangles that were found last are looked at first:
     /// neighbouring points often have the same.
-    pub fn any_within(&self, around: &Around, recent: &mut Recent, accept: impl Fn(&Triangle) -> bool) -> bool {
+    pub fn any_around(&self, around: &Around, recent: &mut Recent, accept: impl Fn(&Triangle) -> bool) -> bool {
         let limit = around.radius * around.radius;
         let (p, reach) = (self.local(around.point), self.reach(around, limit));
         let holds = |t: &Triangle| accept(t) && t.nearest(around.point, limit).is_some();
@@ -192,10 +192,15 @@ impl Bvh {
         found
     }
 
+    /// The nearest of the triangles that `accept` takes, if one is within `radius` of `p`.
+    pub fn nearest_within(&self, p: &Point, radius: f64, accept: impl Fn(&Triangle) -> bool) -> Option<Nearest> {
+        self.nearest_around(&Around { point: p, radius, sides: sides::ALL }, &mut { u32::MAX }, accept)
+    }
+
     /// The nearest of the triangles that `accept` takes, if one is there; of equally near ones the one with the least
     /// number. `guess`, the position of a triangle, is looked at first and becomes that of the nearest: a good one spares
     /// most of the way.
-    pub fn nearest_within(
+    pub fn nearest_around(
         &self,
         around: &Around,
         guess: &mut u32,
@@ -304,9 +309,9 @@ mod tests {
             let p = Point::new(i as f64 * 0.07, (i * i % 97) as f64 * 0.12, (i % 5) as f64 * 0.3) + off;
             let distance = |t: &[Point; 3]| (nearest_on_triangle(&p, t) - p).norm_squared();
             let all = triangles.iter().map(|(t, _)| distance(t)).fold(f64::INFINITY, f64::min);
-            let found = tree.nearest_within(&around(&p, 100.0), &mut first, |_| true).unwrap();
+            let found = tree.nearest_around(&around(&p, 100.0), &mut first, |_| true).unwrap();
             assert_eq!(found.squared, all);
-            assert_eq!(tree.any_within(&around(&p, 0.5), &mut second, |_| true), all <= 0.25);
+            assert_eq!(tree.any_around(&around(&p, 0.5), &mut second, |_| true), all <= 0.25);
         }
     }
 
@@ -314,18 +319,18 @@ mod tests {
     fn triangles_that_are_not_accepted_do_not_count() {
         let tree = Bvh::new(sheet(3));
         let p = Point::new(0.1, 0.1, 0.5);
-        assert!(tree.any_within(&around(&p, 1.0), &mut Recent::default(), |t| t.normal.z > 0.0));
-        assert!(!tree.any_within(&around(&p, 1.0), &mut Recent::default(), |t| t.normal.z < 0.0));
-        assert_eq!(tree.nearest_within(&around(&p, 9.0), &mut 0, |t| t.id != 0).unwrap().id, 1);
-        assert!(Bvh::default().nearest_within(&around(&p, 9.0), &mut 0, |_| true).is_none());
+        assert!(tree.any_around(&around(&p, 1.0), &mut Recent::default(), |t| t.normal.z > 0.0));
+        assert!(!tree.any_around(&around(&p, 1.0), &mut Recent::default(), |t| t.normal.z < 0.0));
+        assert_eq!(tree.nearest_within(&p, 9.0, |t| t.id != 0).unwrap().id, 1);
+        assert!(Bvh::default().nearest_within(&p, 9.0, |_| true).is_none());
         let below = Around { sides: sides::of(&-Vector::z()), ..around(&p, 9.0) };
-        assert!(tree.nearest_within(&below, &mut 99, |_| true).is_none());
+        assert!(tree.nearest_around(&below, &mut 99, |_| true).is_none());
     }
 
     #[test]
     fn triangles_in_one_place_make_a_tree_too() {
         let heap: Vec<_> = (0..1000).map(|i| (sheet(1)[0].0, i)).collect();
         let tree = Bvh::new(heap);
-        assert!(tree.any_within(&around(&Point::new(0.2, 0.2, 0.1), 0.2), &mut Recent::default(), |t| t.id == 999));
+        assert!(tree.any_around(&around(&Point::new(0.2, 0.2, 0.1), 0.2), &mut Recent::default(), |t| t.id == 999));
     }
 }

@@ -84,14 +84,14 @@ impl SurfaceField {
     }
 
     /// The point of the surface nearest to `p` of those with this normal, if one is within `radius`. `guess` as in
-    /// [`Bvh::nearest_within`].
+    /// [`Bvh::nearest_around`].
     pub fn nearest(&self, (p, normal): (&Point, &Vector), radius: f64, guess: &mut u32) -> Option<Nearest> {
         let around = Around { point: p, radius, sides: self.agreeing.of(normal) };
-        self.tree.nearest_within(&around, guess, |t| self.agree(&t.normal, normal))
+        self.tree.nearest_around(&around, guess, |t| self.agree(&t.normal, normal))
     }
 
     /// Whether a face that `accept` takes has a point within `radius` of `p` with this normal. `recent` as in
-    /// [`Bvh::any_within`].
+    /// [`Bvh::any_around`].
     pub fn touches(
         &self,
         (p, normal): (&Point, &Vector),
@@ -100,10 +100,10 @@ impl SurfaceField {
         accept: impl Fn(PlacedFaceId) -> bool,
     ) -> bool {
         let around = Around { point: p, radius, sides: self.agreeing.of(normal) };
-        self.tree.any_within(&around, recent, |t| self.agree(&t.normal, normal) && accept(PlacedFaceId(t.id)))
+        self.tree.any_around(&around, recent, |t| self.agree(&t.normal, normal) && accept(PlacedFaceId(t.id)))
     }
 
-    /// Whether the isometry maps a sample onto the surface. `recent` as in [`Bvh::any_within`].
+    /// Whether the isometry maps a sample onto the surface. `recent` as in [`Bvh::any_around`].
     fn maps(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
         let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
         self.touches((&p, &normal), self.radius, recent, |_| true)
