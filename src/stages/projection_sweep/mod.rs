@@ -14,6 +14,7 @@
 mod curve;
 mod pixels;
 mod reference;
+mod shadow;
 mod slices;
 
 use crate::cancel::Cancel;

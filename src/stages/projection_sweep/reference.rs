@@ -9,9 +9,7 @@ use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 
-use super::curve::Shadows;
-use super::slices::Slices;
-use super::{Options, Source, towards};
+use super::{Options, Source, shadow, towards};
 
 /// The first canonical axis.
 pub(super) struct Reference {
@@ -68,10 +66,8 @@ pub(super) fn shadow_along(
     options: &Options,
     cancel: &Cancel,
 ) -> Result<f64, Cancelled> {
-    let table =
-        Turntable { axis: *across, u: *view, v: across.cross(view), ..Turntable::arbitrary(&parsed.measures, across) };
-    let mut slices = Slices::cut(&parsed.mesh, &table, options.slices, cancel)?;
-    Ok(slices.areas(&[0.0], cancel)?[0])
+    let along = across.cross(view);
+    shadow::area(&parsed.mesh, [across, &along], &parsed.measures.centroid, options.slices, cancel)
 }
 
 /// An axis and two directions at right angles to it: angle 0 looks along `u`, a quarter turn along `v`.

@@ -11,6 +11,7 @@
 //! Cost: a few hundred queries of the triangle tree for each plane that is kept, some tens for each that is dropped.
 
 pub mod faces;
+mod quads;
 pub mod shape;
 pub mod support;
 
