@@ -55,7 +55,7 @@ fn projected(normals: &[Vector], axes: &[Vector; 3]) -> f64 {
 }
 
 /// One normal times its area for each distinct direction, opposite ones joined, largest first.
-fn weighted_normals(mesh: &Mesh) -> Vec<Vector> {
+pub(super) fn weighted_normals(mesh: &Mesh) -> Vec<Vector> {
     let mut grid = FINEST_GRID;
     loop {
         let merged = merge_normals(mesh, grid);

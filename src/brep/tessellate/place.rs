@@ -3,10 +3,10 @@
 use super::face::FaceMesh;
 use crate::brep::{EdgeId, FaceGeometry, Mesh, MeshFace, Model, Occurrence, Skipped, Surface};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Aabb, Point, Transform, Vector};
+use crate::geometry::{Point, Transform, Vector};
 
 /// Samples of each edge for the size of the model.
-const BOX_SAMPLES: usize = 4;
+const EDGE_SAMPLES: usize = 4;
 
 /// A mesh in the making.
 #[derive(Default)]
@@ -86,74 +86,108 @@ pub(super) fn place(
     Ok(placed)
 }
 
-/// A rough box of each body in its own coordinates: points of its edges and the extent of surfaces without bounds.
-pub(super) fn boxes(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Aabb> {
-    let body_box = |body: &crate::brep::Body| {
-        let mut aabb = Aabb::default();
+/// Where a body lies in its own coordinates, roughly.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub centre: Point,
+    /// Of a ball about the centre that holds the body.
+    pub radius: f64,
+}
+
+impl Place {
+    /// The ball about the middle between two points that are far apart: the same for a body wherever its coordinates
+    /// come from, so that a model is meshed alike in every pose. `None` without points.
+    fn of(points: &[Point]) -> Option<Self> {
+        let first = points.first()?;
+        let mean = points.iter().map(|p| (p - first) / points.len() as f64).sum::<Vector>() + first.coords;
+        let from = farthest(points, &Point::from(mean))?;
+        let to = farthest(points, &from)?;
+        let centre = nalgebra::center(&from, &to);
+        let radius = (farthest(points, &centre)? - centre).norm();
+        Some(Self { centre, radius })
+    }
+}
+
+fn farthest(points: &[Point], from: &Point) -> Option<Point> {
+    points.iter().copied().max_by(|p, q| (p - from).norm_squared().total_cmp(&(q - from).norm_squared()))
+}
+
+/// Where each body lies, by points of its edges and the extent of surfaces without bounds.
+pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Place>> {
+    let place = |body: &crate::brep::Body| {
+        let mut points = Vec::new();
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
         for face in faces.map(|f| &model.faces[f.index()]) {
             match &face.geometry {
-                FaceGeometry::Faceted(facets) => facets.points.iter().for_each(|p| aabb.add(p)),
+                FaceGeometry::Faceted(facets) => points.extend_from_slice(&facets.points),
                 FaceGeometry::Trimmed { surface, .. } if face.loops.iter().all(|l| l.uses.is_empty()) => {
-                    add_surface(&mut aabb, surface);
+                    add_surface(&mut points, surface);
                 }
                 FaceGeometry::Trimmed { .. } => {
                     let edges = face.loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);
-                    edges.for_each(|e| add_edge(&mut aabb, model, e, spans[e.index()]));
+                    edges.for_each(|e| add_edge(&mut points, model, e, spans[e.index()]));
                 }
             }
         }
-        aabb
+        points.retain(|p| p.iter().all(|c| c.is_finite()));
+        Place::of(&points)
     };
-    model.bodies.iter().map(body_box).collect()
+    model.bodies.iter().map(place).collect()
 }
 
-fn add_edge(aabb: &mut Aabb, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
-    model.ends(id).iter().for_each(|p| aabb.add(p));
+fn add_edge(points: &mut Vec<Point>, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
+    points.extend(model.ends(id));
     let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) else { return };
     if matches!(curve, crate::brep::Curve::Line { .. }) {
         return;
     }
     let period = curve.period();
-    for i in 1..BOX_SAMPLES {
-        let t = from + (to - from) * i as f64 / BOX_SAMPLES as f64;
-        aabb.add(&curve.point(curve.wrap(t, period)));
+    for i in 1..EDGE_SAMPLES {
+        let t = from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
+        points.push(curve.point(curve.wrap(t, period)));
     }
 }
 
-/// Corners of a box around a whole sphere or torus; the corners of the domain for others that have one.
-fn add_surface(aabb: &mut Aabb, surface: &Surface) {
-    let (centre, reach) = match surface {
-        Surface::Sphere { placement, radius } => (placement.origin, *radius),
-        Surface::Torus { placement, major, minor } => (placement.origin, major + minor),
+/// The poles of a whole sphere or torus; a grid over the domain of others that have one.
+fn add_surface(points: &mut Vec<Point>, surface: &Surface) {
+    let (placement, reach) = match surface {
+        Surface::Sphere { placement, radius } => (placement, *radius),
+        Surface::Torus { placement, major, minor } => (placement, major + minor),
         other => {
             let [u0, u1, v0, v1] = other.domain();
             if [u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
-                let share = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / BOX_SAMPLES as f64;
-                let nodes = (0..=BOX_SAMPLES).flat_map(|i| (0..=BOX_SAMPLES).map(move |j| (i, j)));
-                nodes.for_each(|(i, j)| aabb.add(&other.point(share(u0, u1, i), share(v0, v1, j))));
+                let share = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / EDGE_SAMPLES as f64;
+                let nodes = (0..=EDGE_SAMPLES).flat_map(|i| (0..=EDGE_SAMPLES).map(move |j| (i, j)));
+                points.extend(nodes.map(|(i, j)| other.point(share(u0, u1, i), share(v0, v1, j))));
             }
             return;
         }
     };
-    aabb.add(&(centre + Vector::repeat(reach)));
-    aabb.add(&(centre - Vector::repeat(reach)));
+    let poles = [placement.x, placement.y, placement.z].into_iter().flat_map(|axis| [axis * reach, -axis * reach]);
+    points.extend(poles.map(|pole| placement.origin + pole));
 }
 
-/// The box of all occurrences, from the corners of the bodies' boxes.
-pub(super) fn model_box(model: &Model, boxes: &[Aabb]) -> Aabb {
-    let mut all = Aabb::default();
-    for Occurrence { body, placement, .. } in &model.occurrences {
-        let aabb = &boxes[body.index()];
-        if aabb.is_empty() {
-            continue;
-        }
-        for corner in 0..8 {
-            let side = |axis: usize| if corner >> axis & 1 == 0 { aabb.min[axis] } else { aabb.max[axis] };
-            all.add(&placement.point(&Point::new(side(0), side(1), side(2))));
-        }
+/// The diameter of all occurrences, seen as balls, mm; 0 without any.
+pub(super) fn model_size(model: &Model, places: &[Option<Place>]) -> f64 {
+    let placed = |o: &Occurrence| {
+        let own = places[o.body.index()]?;
+        Some((o.placement.point(&own.centre), own.radius * o.placement.scale()))
+    };
+    let balls: Vec<_> = model.occurrences.iter().filter_map(placed).collect();
+    let reach = |from: &Point| {
+        let reaches = balls.iter().map(|(centre, radius)| (*centre, (centre - from).norm() + radius));
+        reaches.max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let Some((first, radius)) = balls.first() else { return 0.0 };
+    if balls.len() == 1 {
+        return 2.0 * radius;
     }
-    all
+    let mean = balls.iter().map(|(c, _)| (c - first) / balls.len() as f64).sum::<Vector>() + first.coords;
+    let mean = Point::from(mean);
+    // As far as the ball that reaches farthest from the mean, on its far side.
+    let Some((centre, far)) = reach(&mean) else { return 0.0 };
+    let outward = (centre - mean).try_normalize(0.0).unwrap_or_else(Vector::zeros);
+    reach(&(mean + outward * far)).map_or(0.0, |(_, size)| size)
 }
 
 /// The largest factor by which an occurrence enlarges its body.

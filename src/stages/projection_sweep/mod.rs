@@ -22,7 +22,7 @@ use crate::stages::merge::Symmetries;
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
 
-use curve::Shadows;
+pub use curve::Shadows;
 pub use pixels::PixelShadows;
 use reference::{Turntable, shadow_along};
 pub use slices::Slices;
