@@ -14,7 +14,8 @@ between 1e-3 and 1e3, written as STEP by OpenCASCADE. For the symmetry frame it 
   other model;
 - lost: the original is not the nearest of all models to it;
 
-and the totals.
+and the totals. Models whose descriptors are within 0.005 of the original's are the same part from another file, and no
+other models.
 """
 
 import argparse
@@ -31,6 +32,7 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.Message import Message
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 
+SAME = 0.005
 PROGRAM = pathlib.Path(__file__).resolve().parent.parent / "target/release/symalign"
 
 
@@ -116,10 +118,11 @@ def main():
             off = angle(axes, np.array(copy["frames"]["symmetry"]["axes"]))
             shares = []
             for distance in (magnitude, phase):
-                to = {other: distance(own, known[other]) for other in known}
-                nearest = min(distance(known[path], known[other]) for other in known if other != path)
-                shares.append(to[path] / nearest)
-                if min(to, key=to.get) != path:
+                others = {other: distance(known[path], known[other]) for other in known}
+                others = {other: d for other, d in others.items() if d > SAME}
+                to_own = distance(own, known[path])
+                shares.append(to_own / min(others.values()))
+                if min(distance(own, known[other]) for other in others) <= to_own:
                     verdict.append("lost")
             if off <= 0.05:
                 angles.append(off)
