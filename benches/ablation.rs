@@ -246,11 +246,11 @@ impl Outcome {
         let by_magnitude = |i: usize, j: usize| magnitude(of(i).magnitudes(), of(j).magnitudes());
         let by_phase = |i: usize, j: usize| distance::phase(of(i).phases(), of(j).phases());
         let entrants = [
-            Entrant { name: "magnitude".into(), distance: Box::new(by_magnitude) },
-            Entrant { name: "phase".into(), distance: Box::new(by_phase) },
+            Entrant::of_pairs("magnitude", rows.len(), by_magnitude),
+            Entrant::of_pairs("phase", rows.len(), by_phase),
         ];
         let options = Options { draws: 1, resamples: 1, ..Options::default() };
-        let methods = score(gallery, &entrants, &options)?.methods;
+        let methods = score(gallery, &entrants, &options, None)?.methods;
         Ok([methods[0].summary.micro.ap, methods[1].summary.micro.ap])
     }
 }

@@ -89,11 +89,11 @@ fn report<'a>(
     let magnitude = |i: usize, j: usize| distance::magnitude(a[b[i]].magnitudes(), a[b[j]].magnitudes());
     let phase = |i: usize, j: usize| distance::phase(a[b[i]].phases(), a[b[j]].phases());
     let entrants = [
-        Entrant { name: name.to_owned(), distance: Box::new(magnitude) },
-        Entrant { name: format!("{name}:phase"), distance: Box::new(phase) },
+        Entrant::of_pairs(name, rows.len(), magnitude),
+        Entrant::of_pairs(&format!("{name}:phase"), rows.len(), phase),
     ];
     let options = Options { draws: 1, resamples: 1, ..Options::default() };
-    for method in score(gallery, &entrants, &options)?.methods {
+    for method in score(gallery, &entrants, &options, None)?.methods {
         let summary = &method.summary;
         let curve = summary.micro_curves.pr11.map(|p| p.map_or("-".into(), |p| format!("{p:.3}"))).join(" ");
         println!("{:<24} mAP {:.3} NN {:.3} | {curve}", method.name, summary.micro.ap, summary.micro.nn);

@@ -95,21 +95,16 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The ball about the middle between two points that are far apart: the same for a body wherever its coordinates
-    /// come from, so that a model is meshed alike in every pose. `None` without points.
-    fn of(points: &[Point]) -> Option<Self> {
-        let first = points.first()?;
-        let mean = points.iter().map(|p| (p - first) / points.len() as f64).sum::<Vector>() + first.coords;
-        let from = farthest(points, &Point::from(mean))?;
-        let to = farthest(points, &from)?;
-        let centre = nalgebra::center(&from, &to);
-        let radius = (farthest(points, &centre)? - centre).norm();
+    /// The ball about the mean of weighted points: the same for a body whatever its coordinates, without a choice that
+    /// rounding decides, so that a model is meshed alike in every pose. `None` without points.
+    fn of(points: &[(Point, f64)]) -> Option<Self> {
+        let (first, _) = points.first()?;
+        let total: f64 = points.iter().map(|(_, weight)| weight).sum();
+        let share = |weight: f64| if total > 0.0 { weight / total } else { 1.0 / points.len() as f64 };
+        let centre = first + points.iter().map(|(p, weight)| (p - first) * share(*weight)).sum::<Vector>();
+        let radius = points.iter().map(|(p, _)| (p - centre).norm()).fold(0.0, f64::max);
         Some(Self { centre, radius })
     }
-}
-
-fn farthest(points: &[Point], from: &Point) -> Option<Point> {
-    points.iter().copied().max_by(|p, q| (p - from).norm_squared().total_cmp(&(q - from).norm_squared()))
 }
 
 /// Where each body lies, by points of its edges and the extent of surfaces without bounds.
@@ -119,7 +114,7 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
         for face in faces.map(|f| &model.faces[f.index()]) {
             match &face.geometry {
-                FaceGeometry::Faceted(facets) => points.extend_from_slice(&facets.points),
+                FaceGeometry::Faceted(facets) => add_chain(&mut points, &facets.points),
                 FaceGeometry::Trimmed { surface, .. } if face.loops.iter().all(|l| l.uses.is_empty()) => {
                     add_surface(&mut points, surface);
                 }
@@ -129,27 +124,35 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
                 }
             }
         }
-        points.retain(|p| p.iter().all(|c| c.is_finite()));
+        points.retain(|(p, weight): &(Point, f64)| p.iter().chain([weight]).all(|c| c.is_finite()));
         Place::of(&points)
     };
     model.bodies.iter().map(place).collect()
 }
 
-fn add_edge(points: &mut Vec<Point>, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
-    points.extend(model.ends(id));
-    let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) else { return };
-    if matches!(curve, crate::brep::Curve::Line { .. }) {
-        return;
-    }
-    let period = curve.period();
-    for i in 1..EDGE_SAMPLES {
-        let t = from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
-        points.push(curve.point(curve.wrap(t, period)));
+/// Adds points, each with the distance from the one before it as its weight: many on a short edge count little.
+fn add_chain(points: &mut Vec<(Point, f64)>, chain: &[Point]) {
+    let mut before = chain.first();
+    for p in chain {
+        points.push((*p, before.map_or(0.0, |q| (p - q).norm())));
+        before = Some(p);
     }
 }
 
+fn add_edge(points: &mut Vec<(Point, f64)>, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
+    let [start, end] = model.ends(id);
+    let mut chain = vec![start];
+    if let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) {
+        let period = curve.period();
+        let at = |i: usize| from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
+        chain.extend((1..EDGE_SAMPLES).map(|i| curve.point(curve.wrap(at(i), period))));
+    }
+    chain.push(end);
+    add_chain(points, &chain);
+}
+
 /// The poles of a whole sphere or torus; a grid over the domain of others that have one.
-fn add_surface(points: &mut Vec<Point>, surface: &Surface) {
+fn add_surface(points: &mut Vec<(Point, f64)>, surface: &Surface) {
     let (placement, reach) = match surface {
         Surface::Sphere { placement, radius } => (placement, *radius),
         Surface::Torus { placement, major, minor } => (placement, major + minor),
@@ -158,36 +161,25 @@ fn add_surface(points: &mut Vec<Point>, surface: &Surface) {
             if [u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
                 let share = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / EDGE_SAMPLES as f64;
                 let nodes = (0..=EDGE_SAMPLES).flat_map(|i| (0..=EDGE_SAMPLES).map(move |j| (i, j)));
-                points.extend(nodes.map(|(i, j)| other.point(share(u0, u1, i), share(v0, v1, j))));
+                let grid: Vec<_> = nodes.map(|(i, j)| other.point(share(u0, u1, i), share(v0, v1, j))).collect();
+                add_chain(points, &grid);
             }
             return;
         }
     };
     let poles = [placement.x, placement.y, placement.z].into_iter().flat_map(|axis| [axis * reach, -axis * reach]);
-    points.extend(poles.map(|pole| placement.origin + pole));
+    points.extend(poles.map(|pole| (placement.origin + pole, reach)));
 }
 
-/// The diameter of all occurrences, seen as balls, mm; 0 without any.
+/// The diameter of a ball that holds all occurrences, seen as balls, mm; 0 without any.
 pub(super) fn model_size(model: &Model, places: &[Option<Place>]) -> f64 {
     let placed = |o: &Occurrence| {
         let own = places[o.body.index()]?;
         Some((o.placement.point(&own.centre), own.radius * o.placement.scale()))
     };
-    let balls: Vec<_> = model.occurrences.iter().filter_map(placed).collect();
-    let reach = |from: &Point| {
-        let reaches = balls.iter().map(|(centre, radius)| (*centre, (centre - from).norm() + radius));
-        reaches.max_by(|a, b| a.1.total_cmp(&b.1))
-    };
-    let Some((first, radius)) = balls.first() else { return 0.0 };
-    if balls.len() == 1 {
-        return 2.0 * radius;
-    }
-    let mean = balls.iter().map(|(c, _)| (c - first) / balls.len() as f64).sum::<Vector>() + first.coords;
-    let mean = Point::from(mean);
-    // As far as the ball that reaches farthest from the mean, on its far side.
-    let Some((centre, far)) = reach(&mean) else { return 0.0 };
-    let outward = (centre - mean).try_normalize(0.0).unwrap_or_else(Vector::zeros);
-    reach(&(mean + outward * far)).map_or(0.0, |(_, size)| size)
+    let balls: Vec<(Point, f64)> = model.occurrences.iter().filter_map(placed).collect();
+    let Some(all) = Place::of(&balls) else { return 0.0 };
+    2.0 * balls.iter().map(|(centre, radius)| (centre - all.centre).norm() + radius).fold(0.0, f64::max)
 }
 
 /// The largest factor by which an occurrence enlarges its body.
