@@ -27,8 +27,13 @@ const ANGLE: f64 = 0.05;
 /// Share of the distance to the nearest other model that a copy may be away.
 const AWAY: f64 = 0.01;
 /// Models of which some methods leave the frame open: turned about an axis they look alike to a covariance.
-const OPEN: [&str; 4] =
-    ["household/stool", "household/wine-glass", "machinery/hexagon-bolt", "machinery/ship-propeller"];
+const OPEN: [&str; 5] = [
+    "household/mug-with-mark",
+    "household/stool",
+    "household/wine-glass",
+    "machinery/hexagon-bolt",
+    "machinery/ship-propeller",
+];
 
 fn settings(random_pose: Option<u64>) -> Settings {
     Settings { methods: Method::ALL.to_vec(), random_pose, ..Settings::default() }
@@ -63,6 +68,7 @@ fn apart(a: &Described, b: &Described, method: usize) -> [f64; 2] {
 
 #[test]
 fn frames_and_descriptors_go_with_the_model() {
+    let mut wrong = Vec::new();
     let all: Vec<_> = MODELS.iter().map(|name| (name, poses(name))).collect();
     for (number, method) in Method::ALL.into_iter().enumerate() {
         for (name, [original, copies @ ..]) in &all {
@@ -74,14 +80,15 @@ fn frames_and_descriptors_go_with_the_model() {
                 let (angle, away) = (turned_by(original, copy, number), apart(original, copy, number));
                 let told = format!("{} of {name}: {angle:.4} degrees, {away:.5?} of {nearest:.5?}", method.name());
                 println!("{told}");
-                for (away, nearest) in away.into_iter().zip(nearest) {
-                    assert!(away < nearest || method != Method::Symmetry, "{told}");
-                    // Where a symmetry of the model makes several frames equal, they describe it equally.
-                    let same = angle <= ANGLE || away <= AWAY * nearest;
-                    let open = method != Method::Symmetry && OPEN.contains(name);
-                    assert!(same || open, "{told}");
+                let found = away[0] < nearest[0] && away[1] < nearest[1];
+                // Where a symmetry of the model makes several frames equal, they describe it equally.
+                let same = angle <= ANGLE || (away[0] <= AWAY * nearest[0] && away[1] <= AWAY * nearest[1]);
+                let open = method != Method::Symmetry && OPEN.contains(name);
+                if !(open || found && same) {
+                    wrong.push(told);
                 }
             }
         }
     }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
