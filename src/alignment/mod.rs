@@ -79,6 +79,7 @@ impl Method {
 
 /// What frames are made from beside the mesh.
 pub struct Given<'a> {
+    /// Of the mesh: the centroid is the origin, D the unit of tolerances.
     pub measures: &'a Measures,
     /// The frame that stage 7 found.
     pub symmetry: &'a Frame,
