@@ -33,7 +33,7 @@ use symalign::stages::merge::{Label, Symmetries};
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// A decision turned around: its name, and the settings that do it.
-const LINES: [(&str, &str); 25] = [
+const LINES: [(&str, &str); 26] = [
     ("default", ""),
     ("paper: all of the literal reading", "profile = \"paper\""),
     ("faces as the exporter split them", "[corner_filter]\nmaximal_faces = false"),
@@ -56,6 +56,7 @@ const LINES: [(&str, &str); 25] = [
     ("no refinement between the steps", "[projection_sweep]\nrefine = false"),
     ("sweep from an arbitrary start", "[projection_sweep]\nstart_on_model = false"),
     ("second axis by in-plane PCA", "[projection_sweep]\nsecond_axis = \"pca\""),
+    ("second axis: of the sweep's two what more surface faces", "[projection_sweep]\nsecond_axis = \"normals\""),
     ("128 pixels a silhouette", "[descriptor]\nside = 128"),
     ("broken silhouettes: largest part only", "[descriptor]\nenclosed = 0.0"),
     ("gaps are not closed", "[descriptor]\ngap = 0.0"),
