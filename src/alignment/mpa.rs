@@ -6,7 +6,7 @@
 //! costs hardly more than one shadow each: circles about the principal axes of surface and normals and about the
 //! largest normals (shadows are smallest where large faces are seen edge-on). The best directions found are improved
 //! along two circles through each until nothing moves.
-//! Cost: some twenty sweeps. It does not promise the least shadow of all.
+//! Cost: some twenty cuts of the model, as many times that of the symmetry frame's sweep. It does not promise the least shadow of all.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -28,13 +28,13 @@ const SLICES: (u32, u32) = (64, 256);
 /// Angle between two directions of the first search, radians: 2 degrees.
 const STEP: f64 = PI / 90.0;
 /// Large normals about which there are circles, and the sine by which circles differ at least.
-const NORMALS: usize = 4;
+const NORMALS: usize = 3;
 const APART: f64 = 0.05;
 /// Minima taken of each circle, and directions that are improved.
 const TAKEN: usize = 3;
-const IMPROVED: usize = 3;
+const IMPROVED: usize = 2;
 /// Rounds of improvement at most, and the turn (radians) that ends it.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 4;
 const STILL: f64 = 1e-6;
 /// Width at which golden section stops, radians.
 const WIDTH: f64 = 1e-6;
