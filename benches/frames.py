@@ -2,7 +2,7 @@
 """Holds the frames mbb, mpa, rectilinearity and prst against searches that share nothing with them.
 
     cargo build --release
-    pip install cadquery-ocp trimesh scipy
+    pip install cadquery-ocp trimesh scipy networkx
     python benches/frames.py MODEL.step...
 
 OpenCASCADE reads and tessellates each model; what a frame minimises or maximises is then measured on that mesh, in
@@ -97,8 +97,8 @@ def main():
         out = subprocess.run([PROGRAM, "inspect", "--json", "--method", METHODS, path], capture_output=True, check=True)
         frames = {name: np.array(f["axes"]) for name, f in json.loads(out.stdout)["frames"].items()}
         mesh = mesh_of(path)
-        hull = mesh.vertices
-        boxed = box(hull, frames["mbb"]) / np.prod(trimesh.bounds.oriented_bounds(mesh.vertices)[1])
+        hull = mesh.convex_hull.vertices
+        boxed = box(hull, frames["mbb"]) / mesh.bounding_box_oriented.volume
         centre = mesh.triangles_center.T @ mesh.area_faces / mesh.area
         size = 2 * np.linalg.norm(mesh.vertices - centre, axis=1).max()
         samples = trimesh.sample.sample_surface(mesh, 60000, seed=1)[0]
