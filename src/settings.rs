@@ -144,7 +144,7 @@ impl Settings {
             store: "store".into(),
             labels: None,
             report: "report".into(),
-            methods: Method::ALL.to_vec(),
+            methods: Method::USUAL.to_vec(),
             jobs: 0,
             random_pose: None,
             workers: BTreeMap::new(),

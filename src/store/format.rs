@@ -80,6 +80,10 @@ fn method_code(method: Method) -> u32 {
         Method::Cpca => 2,
         Method::Npca => 3,
         Method::File => 4,
+        Method::Mbb => 5,
+        Method::Rectilinearity => 6,
+        Method::Mpa => 7,
+        Method::Prst => 8,
     }
 }
 
@@ -328,6 +332,6 @@ mod tests {
 
     #[test]
     fn method_codes_do_not_change() {
-        assert_eq!(Method::ALL.map(method_code), [0, 1, 2, 3, 4]);
+        assert_eq!(Method::ALL.map(method_code), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
     }
 }

@@ -39,15 +39,17 @@ use rayon::prelude::*;
 
 use super::{EdgeId, Face, Mesh, Model, Skipped};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Aabb, Point};
+use crate::geometry::Point;
 use edges::{EdgeLines, Fineness};
 use face::{Context, FaceMesh};
+use place::Place;
 
 /// How finely models are tessellated.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
-    /// Largest distance between a chord and its edge or surface, as a share of the diagonal of the model's box.
+    /// Largest distance between a chord and its edge or surface, as a share of the model's diameter,
+    /// measured alike in every pose.
     /// 0.001 is half a pixel of a silhouette of 512 pixels.
     pub deflection: f64,
     /// Largest angle between neighbouring chords, radians. 0.35 (20 degrees) keeps small holes round.
@@ -78,8 +80,8 @@ pub fn tessellate(
     cancel: &Cancel,
 ) -> Result<(Mesh, Vec<Skipped>, Vec<String>), Cancelled> {
     let spans = spans(model, cancel)?;
-    let boxes = place::boxes(model, &spans);
-    let size = place::model_box(model, &boxes).diagonal();
+    let places = place::places(model, &spans);
+    let size = place::model_size(model, &places);
     if size.is_nan() || size <= 0.0 || size.is_infinite() {
         let why = "the model has no extent".to_owned();
         return Ok((Mesh::default(), all_skipped(model, &why), vec![why]));
@@ -88,7 +90,7 @@ pub fn tessellate(
     let fineness = Fineness::new(options, part_size);
     let lines = EdgeLines::of(model, &spans, &fineness, options.max_triangles, cancel)?;
     let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
-    let reference = references(model, &boxes);
+    let reference = references(model, &places);
     let mut context = Context { model, cancel, lines, degenerate, fineness, size: part_size, reference };
     let mut faces = face_meshes(&context, options.max_triangles)?;
     refine::refine(&mut context, &spans, &mut faces, cancel)?;
@@ -113,12 +115,14 @@ fn is_point(lines: &EdgeLines, edge: EdgeId, tolerance: f64) -> bool {
     points.iter().chain(middles).all(|p| (p - points[0]).norm() <= tolerance)
 }
 
-/// The reference point of each face: the centre of its body's box.
-fn references(model: &Model, boxes: &[Aabb]) -> Vec<Point> {
+/// The reference point of each face: the centre of its body.
+fn references(model: &Model, places: &[Option<Place>]) -> Vec<Point> {
     let mut points = vec![Point::origin(); model.faces.len()];
-    for (body, aabb) in model.bodies.iter().zip(boxes) {
+    for (body, place) in model.bodies.iter().zip(places) {
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
-        faces.filter(|_| !aabb.is_empty()).for_each(|f| points[f.index()] = aabb.centre());
+        if let Some(place) = place {
+            faces.for_each(|f| points[f.index()] = place.centre);
+        }
     }
     points
 }

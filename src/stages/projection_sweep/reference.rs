@@ -88,8 +88,12 @@ const ISOTROPIC: f64 = 1e-6;
 impl Turntable {
     /// Starts somewhere: the paper's arbitrary starting orientation.
     pub(super) fn arbitrary(measures: &Measures, axis: &Vector) -> Self {
-        let u = any_perpendicular(axis);
-        Self { axis: *axis, u, v: axis.cross(&u), centre: measures.centroid, largest_variance: 0.0 }
+        Self::about(measures, axis, &any_perpendicular(axis))
+    }
+
+    /// Starts at a direction at right angles to the axis.
+    pub(super) fn about(measures: &Measures, axis: &Vector, start: &Vector) -> Self {
+        Self { axis: *axis, u: *start, v: axis.cross(start), centre: measures.centroid, largest_variance: 0.0 }
     }
 
     /// Starts with `u` at the largest variance of the surface across the axis, so that it moves with the model.

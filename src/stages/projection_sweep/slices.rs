@@ -12,6 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::brep::Mesh;
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
+use crate::stages::parse::Parsed;
 
 use super::curve::Shadows;
 use super::reference::Turntable;
@@ -36,6 +37,17 @@ struct Slice {
 }
 
 impl Slices {
+    /// Cuts the model for the shadows along directions at right angles to `axis`, angles counted from `start`.
+    pub fn about(
+        parsed: &Parsed,
+        axis: &Vector,
+        start: &Vector,
+        count: u32,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        Self::cut(&parsed.mesh, &Turntable::about(&parsed.measures, axis, start), count, cancel)
+    }
+
     /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
     pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
         let count = count.clamp(1, 65_536) as usize;
