@@ -124,7 +124,7 @@ impl<'a> FaceSamples<'a> {
         for (p, n) in samples.iter() {
             let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
             let accept = |t: &crate::geometry::bvh::Triangle| {
-                faces.iter().any(|f| f.0 == t.id) && field.agree(&t.normal, &normal)
+                faces.binary_search(&crate::brep::PlacedFaceId(t.id)).is_ok() && field.agree(&t.normal, &normal)
             };
             match field.tree().nearest_within(&image, far, accept) {
                 None => return false,
