@@ -55,7 +55,11 @@ fn symmetry(symmetries: &Symmetries, model: &Model, mesh: &Mesh) -> Value {
     let axes = symmetries.axes.iter();
     let axes: Vec<_> =
         axes.map(|axis| json!({"point_mm": point(&axis.point), "direction": vector(&axis.direction)})).collect();
-    json!({"label": symmetries.label, "planes": planes, "axes": axes})
+    let repeats = &symmetries.repeats;
+    let repeats = json!({
+        "faces": repeats.faces, "ratio": repeats.ratio, "shifted": repeats.shifted, "turned": repeats.turned,
+    });
+    json!({"label": symmetries.label, "planes": planes, "axes": axes, "repeats": repeats})
 }
 
 fn plane(found: &SymmetryPlane, model: &Model, mesh: &Mesh) -> Value {

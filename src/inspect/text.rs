@@ -81,6 +81,14 @@ fn symmetry_lines(symmetries: &Symmetries) -> Vec<String> {
         let (point, direction) = (numbers(axis.point.coords.as_slice()), numbers(axis.direction.as_slice()));
         lines.push(format!("  axis of revolution through {point} along {direction}"));
     }
+    let repeats = &symmetries.repeats;
+    lines.push(format!(
+        "repeated faces: {} ({:.0} %), {} by a shift, {} by a turn",
+        repeats.faces,
+        100.0 * repeats.ratio,
+        repeats.shifted,
+        repeats.turned
+    ));
     lines
 }
 

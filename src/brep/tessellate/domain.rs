@@ -2,6 +2,7 @@
 
 use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
+use super::columns::Columns;
 use super::edges::Fineness;
 use super::interior::Grid;
 use super::strip;
@@ -206,7 +207,8 @@ fn by_delaunay(chart: &Chart, layout: &Layout, mut patch: Patch, grid: Option<[u
         sides.iter().for_each(|[a, b]| grid.block(a, b));
         grid.nodes(false).for_each(|uv| patch.add(chart, uv));
     }
-    let inside = |p: &Uv| sides.iter().filter(|[a, b]| crosses_below(a, b, p, 0)).count() % 2 == 1;
+    let columns = Columns::new(&sides, 0);
+    let inside = |p: &Uv| columns.below(p) % 2 == 1;
     fill(chart, patch, &segments, scale, inside)
 }
 

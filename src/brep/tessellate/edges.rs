@@ -236,4 +236,9 @@ impl Fineness {
     pub fn new(options: &Options, size: f64) -> Self {
         Self { deflection: options.deflection * size, angle: options.angle }
     }
+
+    /// With chords so many times as long.
+    pub fn coarser(self, times: f64) -> Self {
+        Self { deflection: self.deflection * times * times, angle: self.angle * times }
+    }
 }

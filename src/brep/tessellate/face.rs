@@ -30,6 +30,8 @@ pub(super) struct Context<'a> {
     /// Edges without length.
     pub degenerate: Vec<bool>,
     pub fineness: Fineness,
+    /// How many times longer the chords are than asked for.
+    pub coarser: f64,
     /// Size of the model in the coordinates of its parts, mm.
     pub size: f64,
     /// For each face the point that its integrals refer to.
@@ -123,7 +125,8 @@ fn patch(
 fn error(mesh: &FaceMesh, context: &Context) -> f64 {
     let (plain, exact) = (integrate_triangles(&mesh.points, &mesh.triangles, &mesh.reference), &mesh.integrals);
     let unseen = UNSEEN * context.size * context.size;
-    let by_area = (plain.area - exact.area).abs() / (AREA_OFF * exact.area).max(unseen);
+    let area_off = AREA_OFF * context.coarser.powi(3);
+    let by_area = (plain.area - exact.area).abs() / (area_off * exact.area).max(unseen);
     let by_distance = (plain.flux - exact.flux).abs() / (context.fineness.deflection * exact.area.max(unseen));
     by_area.max(by_distance)
 }

@@ -18,6 +18,7 @@
 mod bending;
 mod boundary;
 mod chart;
+mod columns;
 mod domain;
 mod edges;
 mod face;
@@ -54,8 +55,8 @@ pub struct Options {
     pub deflection: f64,
     /// Largest angle between neighbouring chords, radians. 0.35 (20 degrees) keeps small holes round.
     pub angle: f64,
-    /// Triangles of one model at most, over all occurrences; faces beyond are left out and reported. Bounds the
-    /// memory at about half a gigabyte.
+    /// Triangles of one model at most, over all occurrences. Where there would be more the chords are longer, and where
+    /// that does not help faces are left out; both are reported. Bounds the memory at about half a gigabyte.
     pub max_triangles: usize,
 }
 
@@ -67,6 +68,8 @@ impl Default for Options {
 
 /// Models with fewer faces than this are not worth more than one thread.
 const PARALLEL_FACES: usize = 400;
+/// Where there would be too many triangles, chords are made this many times as long at most: hexagons for circles.
+const COARSEST: f64 = 3.0;
 /// Faces that are tessellated before their triangles are counted.
 const BATCH: usize = 512;
 
@@ -87,17 +90,31 @@ pub fn tessellate(
         return Ok((Mesh::default(), all_skipped(model, &why), vec![why]));
     }
     let part_size = size / place::largest_scale(model);
-    let fineness = Fineness::new(options, part_size);
-    let lines = EdgeLines::of(model, &spans, &fineness, options.max_triangles, cancel)?;
-    let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
     let reference = references(model, &places);
-    let mut context = Context { model, cancel, lines, degenerate, fineness, size: part_size, reference };
-    let mut faces = face_meshes(&context, options.max_triangles)?;
-    refine::refine(&mut context, &spans, &mut faces, cancel)?;
-    let warning = context.lines.warning();
-    let (mesh, skipped, mut warnings) = place::place(model, faces, options.max_triangles, cancel)?.finish();
-    warnings.extend(warning);
-    Ok((mesh, skipped, warnings))
+    let most = options.max_triangles;
+    let mut coarser = 1.0;
+    loop {
+        let fineness = Fineness::new(options, part_size).coarser(coarser);
+        let lines = EdgeLines::of(model, &spans, &fineness, most, cancel)?;
+        let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
+        let reference = reference.clone();
+        let mut context = Context { model, cancel, lines, degenerate, fineness, coarser, size: part_size, reference };
+        let mut faces = face_meshes(&context, most)?;
+        let share = place::triangles(model, &faces) as f64 / most as f64;
+        if share > 1.0 && coarser < COARSEST {
+            // The second time nothing is left to chance.
+            coarser = if coarser > 1.0 { COARSEST } else { (1.2 * share.sqrt()).min(COARSEST) };
+            continue;
+        }
+        refine::refine(&mut context, &spans, &mut faces, cancel)?;
+        let warning = context.lines.warning();
+        let (mesh, skipped, mut warnings) = place::place(model, faces, most, cancel)?.finish();
+        warnings.extend(warning);
+        if coarser > 1.0 {
+            warnings.push(format!("chords are {coarser:.1} times as long as asked for: too many triangles"));
+        }
+        return Ok((mesh, skipped, warnings));
+    }
 }
 
 /// Where each edge begins and ends on its curve.

@@ -57,6 +57,13 @@ impl Placed {
     }
 }
 
+/// Triangles of all occurrences together; faces that were not tessellated any more count as the others do.
+pub(super) fn triangles(model: &Model, faces: &[Result<FaceMesh, String>]) -> usize {
+    let of_body = |o: &Occurrence| model.faces_of(o.body).filter_map(|id| faces.get(id.index())?.as_ref().ok());
+    let placed: usize = model.occurrences.iter().flat_map(of_body).map(|face| face.triangles.len()).sum();
+    (placed as f64 * model.faces.len() as f64 / faces.len().max(1) as f64) as usize
+}
+
 /// Puts every face where each occurrence of its body has it.
 pub(super) fn place(
     model: &Model,

@@ -141,7 +141,8 @@ struct LocalOutline {
 impl LocalOutline {
     /// The outline in its occurrence; `None` where the mesh has none of its faces.
     fn placed(&self, parsed: &Parsed, places: &PlacedFaces, placement: &Transform) -> Option<Outline> {
-        let faces: Vec<_> = self.faces.iter().filter_map(|&f| places.find(f)).collect();
+        let mut faces: Vec<_> = self.faces.iter().filter_map(|&f| places.find(f)).collect();
+        faces.sort_unstable();
         let area: f64 = faces.iter().map(|f| parsed.mesh.faces[f.index()].area).sum();
         if !(area > 0.0 && area.is_finite()) {
             return None;

@@ -86,8 +86,19 @@ pub struct Candidate {
 pub struct Repeats {
     /// Faces that are the image of another one.
     pub faces: usize,
-    /// Their share of all (maximal) faces.
+    /// Their share of all (maximal) faces: the repeated-face ratio.
     pub ratio: f64,
+    /// Faces that another one is shifted to, without a turn.
+    pub shifted: usize,
+    /// Faces that another one is turned to (and shifted).
+    pub turned: usize,
+}
+
+/// How a face is the image of another one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Repeated {
+    shifted: bool,
+    turned: bool,
 }
 
 /// What the pairs say.
@@ -112,22 +123,28 @@ pub fn isometry(
 ) -> Result<Candidates, ModelError> {
     let size = parsed.measures.tolerance.size();
     let mut mirrors = Vec::new();
-    let mut repeated = vec![false; outlines.len()];
+    let mut repeated = vec![Repeated::default(); outlines.len()];
     for (i, pair) in matches.pairs.iter().enumerate() {
         if i % 1024 == 0 {
             cancel.check().map_err(|c| ModelError::cancelled(Stage::Isometry, c))?;
         }
         mirrors.extend(mirror_of(outlines, pair, i as u32, size, options));
         let [a, b] = pair.faces.map(|f| f as usize);
-        if !(repeated[a] && repeated[b]) && repeats(outlines, pair, size, options) {
-            (repeated[a], repeated[b]) = (true, true);
+        let known = |f: usize| repeated[f].shifted && repeated[f].turned;
+        if let Some(by) = (!(known(a) && known(b))).then(|| direct(outlines, pair, size, options)).flatten() {
+            for face in [a, b] {
+                repeated[face].shifted |= by == Direct::Shift;
+                repeated[face].turned |= by == Direct::Turn;
+            }
         }
     }
     if options.axes > 0 {
         mirrors.extend(axes::planes(&parsed.measures, outlines, options.axes));
     }
-    let faces = repeated.iter().filter(|&&r| r).count();
-    let repeats = Repeats { faces, ratio: faces as f64 / outlines.len().max(1) as f64 };
+    let count = |of: fn(&Repeated) -> bool| repeated.iter().filter(|r| of(r)).count();
+    let faces = count(|r| r.shifted || r.turned);
+    let ratio = faces as f64 / outlines.len().max(1) as f64;
+    let repeats = Repeats { faces, ratio, shifted: count(|r| r.shifted), turned: count(|r| r.turned) };
     Ok(Candidates { mirrors, repeats })
 }
 
@@ -166,15 +183,28 @@ fn mirror_of(outlines: &[Outline], pair: &FacePair, index: u32, size: f64, optio
     (residual <= options.residual * size).then(|| candidate(plane, residual, source))
 }
 
-/// Whether a direct isometry maps the first face of the pair to the second.
-fn repeats(outlines: &[Outline], pair: &FacePair, size: f64, options: &Options) -> bool {
-    if pair.faces[0] == pair.faces[1] || pair.order() == Some(Order::Reversed) {
-        return false;
+/// The kinds of direct isometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Direct {
+    Shift,
+    Turn,
+}
+
+/// Sine of the angle up to which a turn is none.
+const NO_TURN: f64 = 1e-3;
+
+/// The direct isometry that maps the first face of the pair to the second, if one does.
+fn direct(outlines: &[Outline], pair: &FacePair, size: f64, options: &Options) -> Option<Direct> {
+    if !pair.is_of_two() || pair.order() == Some(Order::Reversed) {
+        return None;
     }
+    let kind = |turned: bool| if turned { Direct::Turn } else { Direct::Shift };
     if pair.correspondence == Correspondence::Centroids {
-        return true;
+        let [a, b] = pair.faces.map(|f| outlines[f as usize].axis);
+        return Some(kind(a.zip(b).is_some_and(|(p, q)| p.direction.cross(&q.direction).norm() > NO_TURN)));
     }
     let (from, to) = pair.corners(outlines);
-    let fitted = Isometry::fit(&from, &to, Chirality::Proper);
-    fitted.is_some_and(|(_, squared)| squared.max(0.0).sqrt() <= options.residual * size)
+    let (isometry, squared) = Isometry::fit(&from, &to, Chirality::Proper)?;
+    let turned = (isometry.rotation - crate::geometry::Matrix::identity()).norm() > NO_TURN;
+    (squared.max(0.0).sqrt() <= options.residual * size).then(|| kind(turned))
 }

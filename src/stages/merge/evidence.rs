@@ -15,6 +15,8 @@ use crate::stages::validate::faces::FaceSamples;
 
 /// A mirrored centroid finds its image within this share of D.
 const NEAR: f64 = 0.003;
+/// Coverage from which faces that are their own images count as pairs do.
+const MOST: f64 = 0.8;
 /// Samples of a face that must lie on its image: the centroids and areas agree already.
 const SAMPLES: usize = 12;
 
@@ -60,15 +62,19 @@ pub(super) fn keep_confirmed(merger: &Merger, pool: &mut Vec<SymmetryPlane>, dou
 }
 
 /// Whether the faces that the plane maps onto faces make up enough of what it maps onto the surface. A single pair of
-/// congruent faces always has a plane, and a face that turns about an axis has every plane through it: neither counts.
+/// congruent faces always has a plane, two faces often share one by accident, and a face that turns about an axis has
+/// every plane through it: two pairs must speak for the plane. Where the plane maps most of the surface and damage has
+/// left few pairs whole, three faces or pairs of any kind do.
 fn is_confirmed(merger: &Merger, plane: &SymmetryPlane, faces: &[(u32, u32)]) -> bool {
     let outline = |i: u32| &merger.outlines[i as usize];
     let of_two: f64 = faces.iter().filter(|(a, b)| a != b).map(|&(a, b)| outline(a).area + outline(b).area).sum();
-    let alone = faces.iter().filter(|(a, b)| a == b && outline(*a).axis.is_none());
-    let area = of_two + alone.map(|&(a, _)| outline(a).area).sum::<f64>();
+    let own = faces.iter().filter(|(a, b)| a == b).map(|&(a, _)| outline(a));
+    let alone: Vec<f64> = own.filter(|o| o.axis.is_none()).map(|o| o.area).collect();
+    let area = of_two + alone.iter().sum::<f64>();
     let pairs = faces.iter().filter(|(a, b)| a != b).count();
     let needed = (merger.options.confirmed * plane.coverage).max(merger.options.partial);
-    pairs >= 2 && area >= needed * merger.parsed.measures.area
+    let speak = pairs >= 2 || (plane.coverage >= MOST && pairs + alone.len() >= 3);
+    speak && area >= needed * merger.parsed.measures.area
 }
 
 /// Outlines by where their centroids are.

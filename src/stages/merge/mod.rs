@@ -3,7 +3,7 @@
 //! In: [`Validated`] planes. Out: [`Symmetries`]: the label, the planes best first with their evidence, the axis.
 //!
 //! Method: section IV.E. To the planes that faces speak for come those across the principal axes of the surface
-//! (`principal`) and those of a body of revolution (`revolution`). All are ranked by surface support: the share of the
+//! (`principal`), those of a body of revolution (`revolution`), and what exact planes imply together (`closure`). All are ranked by surface support: the share of the
 //! area whose mirror image lies on the surface, measured in rounds so that only the finalists meet all samples. Ties
 //! are settled by `rank`. The faces that are each other's image (`evidence`) are looked up afterwards. The paper's
 //! own choice, the largest bounding box of symmetric faces, is in `paper`.
@@ -11,7 +11,9 @@
 //! Cost: a few full passes over the samples, each n log n in the triangles. It does not promise partial planes
 //! that neither faces nor principal axes suggest.
 
+mod closure;
 mod evidence;
+mod open;
 mod paper;
 mod principal;
 mod rank;
@@ -216,6 +218,9 @@ impl Merger<'_> {
             }
             new
         });
+        if axes.is_empty() {
+            closure::close(self, &mut pool, &mut index)?;
+        }
         Ok(pool)
     }
 

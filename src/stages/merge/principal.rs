@@ -1,5 +1,10 @@
 //! Planes across the principal axes of the surface and of its normals, polished on the surface.
+//!
+//! The normal of a symmetry plane is a principal axis. Where two or three principal axes are open (an n-fold body, a
+//! cube), all directions between them are tried roughly, for a body of one closed face has nothing else to speak for its
+//! planes.
 
+use super::open::Open;
 use super::{Merger, SymmetryPlane};
 use crate::brep::sample::Sample;
 use crate::cancel::Cancelled;
@@ -10,6 +15,8 @@ use crate::stages::validate::support::{Round, SurfaceField};
 
 /// Eigenvalues closer than this (as a share of the largest) leave their vectors open: those depend on the pose.
 const DISTINCT: f64 = 1e-3;
+/// Eigenvalues closer than this may be equal: the share of 20,000 samples that chance moves, and the triangles.
+const OPEN: f64 = 0.03;
 /// A plane this near (radians, share of D) to one already known is not polished: exact planes only get worse.
 const KNOWN: (f64, f64) = (0.035, 0.01);
 /// Radii of the rounds of polishing, as shares of D: wide first, to be caught, then tight.
@@ -20,7 +27,14 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
     let (field, size) = (&merger.validated.field, merger.parsed.measures.tolerance.size());
     let best = pool.iter().map(|p| p.coverage).fold(0.0, f64::max);
     let mut found: Vec<SymmetryPlane> = Vec::new();
-    for normal in axes(merger, field) {
+    let axes = Axes::of(merger, field);
+    let mut normals = axes.distinct.clone();
+    if let Some(open) = &axes.open
+        && !pool.iter().any(|p| p.coverage >= merger.options.near_global - 0.05 && open.has(&p.plane.normal))
+    {
+        normals.extend(open.promising(merger)?);
+    }
+    for normal in normals {
         merger.cancel.check()?;
         let plane = Plane::through(&merger.parsed.measures.centroid, &normal);
         let known = |p: &&SymmetryPlane| p.coverage >= best - 0.1 && near(&p.plane, &plane, merger);
@@ -49,22 +63,43 @@ fn near(a: &Plane, b: &Plane, merger: &Merger) -> bool {
     a.angle_to(b) <= KNOWN.0 && offsets.abs() <= merger.parsed.measures.tolerance.length(KNOWN.1)
 }
 
-/// The principal axes that the surface determines: of its points, then of its normals.
-fn axes(merger: &Merger, field: &SurfaceField) -> Vec<Vector> {
-    let centroid = merger.parsed.measures.centroid;
-    let (mut points, mut normals) = (Matrix::zeros(), Matrix::zeros());
-    for sample in field.samples(Round::Full) {
-        let d = sample.point - centroid;
-        points += d * d.transpose();
-        normals += sample.normal * sample.normal.transpose();
-    }
-    let mut axes: Vec<Vector> = Vec::new();
-    for axis in [points, normals].iter().flat_map(distinct_axes) {
-        if axes.iter().all(|known| known.cross(&axis).norm() > KNOWN.0) {
-            axes.push(axis);
+/// The principal axes of the surface's points, then of its normals.
+struct Axes {
+    /// Those that are determined.
+    distinct: Vec<Vector>,
+    /// Where the others lie, if any symmetry plane may have one of them as its normal.
+    open: Option<Open>,
+}
+
+impl Axes {
+    fn of(merger: &Merger, field: &SurfaceField) -> Self {
+        let centroid = merger.parsed.measures.centroid;
+        let (mut points, mut normals) = (Matrix::zeros(), Matrix::zeros());
+        for sample in field.samples(Round::Full) {
+            let d = sample.point - centroid;
+            points += d * d.transpose();
+            normals += sample.normal * sample.normal.transpose();
         }
+        let mut distinct: Vec<Vector> = Vec::new();
+        for axis in [points, normals].iter().flat_map(distinct_axes) {
+            if distinct.iter().all(|known| known.cross(&axis).norm() > KNOWN.0) {
+                distinct.push(axis);
+            }
+        }
+        Self { distinct, open: open(&points) }
     }
-    axes
+}
+
+/// The directions between principal axes that samples do not tell apart.
+fn open(points: &Matrix) -> Option<Open> {
+    let (values, vectors) = symmetric_eigen(points);
+    let near = |i: usize, j: usize| values[j] - values[i] <= OPEN * values[2];
+    match (near(0, 1), near(1, 2)) {
+        (true, true) => Some(Open { across: None }),
+        (true, false) => Some(Open { across: Some(vectors[2]) }),
+        (false, true) => Some(Open { across: Some(vectors[0]) }),
+        (false, false) => None,
+    }
 }
 
 /// Eigenvectors whose eigenvalues stand alone.

@@ -10,6 +10,8 @@ use crate::stages::validate::support::Round;
 
 /// Turns under which a body of revolution stays as it is, radians: no part of a full turn that gears use.
 const TURNS: [f64; 3] = [0.7, 1.9, 3.7];
+/// Support from which nothing tells the planes through the axis apart: the samples of 4,000 that rounding may cost.
+const WHOLE: f64 = 0.998;
 /// An axis of a face is the fitted one within this sine and share of D.
 const SNAP: (f64, f64) = (0.03, 0.02);
 
@@ -17,7 +19,7 @@ const SNAP: (f64, f64) = (0.03, 0.02);
 pub(super) fn axes(merger: &Merger) -> Result<Vec<Axis>, Cancelled> {
     let (measures, field) = (&merger.parsed.measures, &merger.validated.field);
     let elements = field.samples(Round::Middle).iter().map(|s| (s.point, s.normal, 1.0));
-    let Some((fitted, error)) = fit_axis(elements, measures.tolerance.size()) else { return Ok(Vec::new()) };
+    let Some((fitted, error)) = fit_axis(elements, measures.tolerance.size()) else { return of_sphere(merger) };
     if error > 0.05 {
         return Ok(Vec::new());
     }
@@ -29,6 +31,13 @@ pub(super) fn axes(merger: &Merger) -> Result<Vec<Axis>, Cancelled> {
         }
     }
     Ok(Vec::new())
+}
+
+/// Spheres about one centre turn about every line through it; the file's z axis stands for all of them.
+fn of_sphere(merger: &Merger) -> Result<Vec<Axis>, Cancelled> {
+    let axis = |direction: Vector| Axis { point: merger.parsed.measures.centroid, direction };
+    let (z, x) = (axis(Vector::z()), axis(Vector::x()));
+    Ok(if turns(merger, &z)? && turns(merger, &x)? { vec![z] } else { Vec::new() })
 }
 
 /// The exact axis of the largest face of revolution near the fitted one.
@@ -77,10 +86,16 @@ fn rotation(axis: &Axis, angle: f64) -> Isometry {
     Isometry { rotation, translation: axis.point.coords - rotation * axis.point.coords, chirality: Chirality::Proper }
 }
 
-/// For a body of revolution: of the planes through the axis keeps one, and adds the plane across in the middle.
+/// For a body of revolution: of the planes through the axis keeps one, and adds the plane across in the middle. Where
+/// turning costs some of the surface (a small keyway), planes that map all of it are more than one of many.
 pub(super) fn restrict(merger: &Merger, axes: &[Axis], pool: &mut Vec<SymmetryPlane>) -> Result<(), Cancelled> {
     let Some(axis) = axes.first() else { return Ok(()) };
-    pool.clear();
+    let turn = rotation(axis, TURNS[0]);
+    if merger.validated.field.support(&turn, Round::Middle, merger.cancel)? >= WHOLE {
+        pool.clear();
+    } else {
+        pool.retain(|p| p.coverage >= WHOLE);
+    }
     let centroid = merger.parsed.measures.centroid;
     let through = Plane::through(&axis.point, &direction_across(merger, axis));
     let across = Plane::through(&centroid, &axis.direction);

@@ -78,6 +78,16 @@ fn a_seven_fold_prism_has_eight_planes() {
 }
 
 #[test]
+fn repeated_faces_are_told_by_shift_and_turn() {
+    // Each wall is turned to the opposite one; a shift would turn it inside out.
+    let found = symmetries(&solid(&cuboid(1.0, 2.0, 4.0), &Transform::identity())).repeats;
+    assert_eq!((found.faces, found.shifted, found.turned, found.ratio), (6, 0, 6, 1.0));
+    // The lids of a scalene prism are mirror images of each other, and its walls are all different.
+    let found = symmetries(&solid(&prism(&[[0.0, 0.0], [5.0, 0.0], [1.0, 2.0]], 3.0), &Transform::identity())).repeats;
+    assert_eq!((found.faces, found.ratio), (0, 0.0));
+}
+
+#[test]
 fn a_parallelepiped_has_none_that_covers_it() {
     let skew = |p: &Point| Point::new(p.x + 0.3 * p.y + 0.4 * p.z, p.y + 0.2 * p.z, p.z);
     let faces: Vec<Vec<_>> = cuboid(2.0, 3.0, 4.0).iter().map(|f| f.iter().map(skew).collect()).collect();

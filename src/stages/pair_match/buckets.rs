@@ -75,7 +75,7 @@ fn neighbours(&(corners, area, length): &Key, extra: u32) -> impl Iterator<Item 
 /// The faces that meet all others: spread evenly over the distances from the centroid, which no pose changes.
 fn subset(members: &[u32], distance: impl Fn(u32) -> f64, count: usize) -> Vec<u32> {
     // Twice as many may meet each other without harm, and small buckets are searched in full.
-    if members.len() <= 2 * count.max(1) {
+    if members.len() <= count.max(1).saturating_mul(2) {
         return members.to_vec();
     }
     let mut sorted: Vec<_> = members.iter().map(|&i| (distance(i), i)).collect();
@@ -112,6 +112,56 @@ mod tests {
         assert_eq!(chosen, [0, 33, 66, 99]);
         // Each of 96 others meets 4 and itself; the 4 meet each other and themselves.
         assert_eq!(within(&members, &chosen).len(), 96 * 5 + 10);
+    }
+
+    /// A flat face of `n` corners about the origin, of an area and a perimeter.
+    fn outline(n: usize, area: f64, perimeter: f64) -> Outline {
+        let corner = |i: usize| crate::geometry::Point::new(i as f64, 0.0, 0.0);
+        Outline {
+            faces: Vec::new(),
+            corners: (0..n).map(corner).collect(),
+            perimeter,
+            inner: Vec::new(),
+            area,
+            centroid: crate::geometry::Point::origin(),
+            axis: None,
+            oriented: true,
+        }
+    }
+
+    #[test]
+    fn all_faces_that_are_alike_meet() {
+        let share = |i: usize, step: f64| (i as f64 * step).fract();
+        let random = |i: usize| {
+            let side = 0.3 + 0.02 * share(i, 0.754_877_666);
+            outline(i % 7, side * side, 4.0 * side * (1.0 + 0.02 * share(i, 0.569_840_291)))
+        };
+        let outlines: Vec<_> = (0..300).map(random).collect();
+        let mut measures = crate::stages::fixture::solid(
+            &crate::stages::fixture::cuboid(1.0, 1.0, 1.0),
+            &crate::geometry::Transform::identity(),
+        )
+        .measures;
+        measures.tolerance = crate::geometry::Tolerance::of(1.0);
+        let options = Options { subset: usize::MAX, ..Options::default() };
+        let met: std::collections::BTreeSet<_> = plan(&outlines, &measures, &options)
+            .into_iter()
+            .flat_map(|b| b.meetings)
+            .map(|(a, b)| (a.min(b), a.max(b)))
+            .collect();
+        let corners = |i: u32| outlines[i as usize].corners.len();
+        let (mut alike_pairs, mut missed) = (0, 0);
+        for a in 0..outlines.len() as u32 {
+            for b in a..outlines.len() as u32 {
+                let (n, m) = (corners(a), corners(b));
+                let comparable = if n.min(m) < 3 { n.max(m) < 3 } else { n.abs_diff(m) <= options.extra_corners };
+                if comparable && alike(&outlines[a as usize], &outlines[b as usize], 1.0) {
+                    alike_pairs += 1;
+                    missed += usize::from(!met.contains(&(a, b)));
+                }
+            }
+        }
+        assert!(alike_pairs > 3000 && missed == 0, "{missed} of {alike_pairs}");
     }
 
     #[test]

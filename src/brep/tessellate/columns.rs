@@ -1,0 +1,58 @@
+//! Which segments pass below a point, without asking all of them.
+
+use super::chart::Uv;
+use super::domain::crosses_below;
+
+/// Segments in columns along one coordinate: about as many columns as segments in each, so that the thousands of holes
+/// of a plate do not cost their square.
+pub(super) struct Columns<'a> {
+    segments: &'a [[Uv; 2]],
+    along: usize,
+    from: f64,
+    width: f64,
+    members: Vec<Vec<u32>>,
+}
+
+impl<'a> Columns<'a> {
+    pub fn new(segments: &'a [[Uv; 2]], along: usize) -> Self {
+        let ends = segments.iter().flatten().map(|p| p[along]);
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let count = (segments.len() as f64).sqrt().ceil().max(1.0);
+        let members = vec![Vec::new(); count as usize];
+        let mut columns = Self { segments, along, from: low, width: (high - low) / count, members };
+        for (i, [a, b]) in segments.iter().enumerate() {
+            let (first, last) = (columns.at(a), columns.at(b));
+            columns.members[first.min(last)..=first.max(last)].iter_mut().for_each(|m| m.push(i as u32));
+        }
+        columns
+    }
+
+    /// The column of a point; the last one also for what is beyond or not a number.
+    fn at(&self, p: &Uv) -> usize {
+        // `as` saturates.
+        (((p[self.along] - self.from) / self.width) as usize).min(self.members.len() - 1)
+    }
+
+    /// How many segments pass below `p`.
+    pub fn below(&self, p: &Uv) -> usize {
+        let near = self.members[self.at(p)].iter().map(|&i| &self.segments[i as usize]);
+        near.filter(|[a, b]| crosses_below(a, b, p, self.along)).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_as_all_segments_do() {
+        let corner = |i: usize| [(i as f64 * 0.754_877_666).fract(), (i as f64 * 0.569_840_291).fract()];
+        let segments: Vec<[Uv; 2]> = (0..200).map(|i| [corner(i), corner(i + 1)]).collect();
+        for along in [0, 1] {
+            let columns = Columns::new(&segments, along);
+            for p in (0..50).map(|i| corner(1000 + i)) {
+                assert_eq!(columns.below(&p), segments.iter().filter(|[a, b]| crosses_below(a, b, &p, along)).count());
+            }
+        }
+    }
+}
