@@ -67,7 +67,7 @@ fn publish_one(dir: &Path) {
         models: vec![("boat/01.step".to_owned(), [5; 32])],
         failures: vec![synthetic::failure("notes.step", "not STEP")],
     };
-    let mut record = synthetic::record("boat/01.step");
+    let mut record = synthetic::record((2, 1));
     record.poses.retain(|pose| pose.method == Method::Symmetry);
     publish(dir, contents, &mut |_, _| Ok(record.clone())).unwrap();
 }
