@@ -14,7 +14,7 @@ use crate::stages::parse::Parsed;
 use crate::stages::projection_sweep::CanonicalFrame;
 
 use super::camera::extent;
-use super::text::{self, Align};
+use super::text;
 use super::{Camera, Canvas, GREY, Paint, Rgb, Scene, area_curve, png, shaded};
 
 /// Pixels on a side of a figure.
@@ -51,15 +51,15 @@ pub fn render_all(
     views: &[Silhouette; 3],
 ) -> io::Result<Vec<PathBuf>> {
     let pictures = [
-        ("symmetry", symmetry(parsed, symmetries, &canonical.frame)),
-        ("silhouettes", silhouettes(views)),
-        ("areas", areas(canonical)),
-        ("frame", frame(parsed, &canonical.frame)),
+        ("symmetry", png(&symmetry(parsed, symmetries, &canonical.frame))?),
+        ("silhouettes", png(&silhouettes(views))?),
+        ("areas", areas(canonical)?),
+        ("frame", png(&frame(parsed, &canonical.frame))?),
     ];
     std::fs::create_dir_all(dir)?;
-    let write = |(figure, picture): &(&str, Pixmap)| {
+    let write = |(figure, picture): &(&str, Vec<u8>)| {
         let path = dir.join(format!("{name}-{figure}.png"));
-        std::fs::write(&path, png(picture)?).map(|()| path)
+        std::fs::write(&path, picture).map(|()| path)
     };
     pictures.iter().map(write).collect()
 }
@@ -116,7 +116,7 @@ pub fn frame(parsed: &Parsed, frame: &Frame) -> Pixmap {
     let mut picture = canvas.resolved();
     for (i, point) in names.iter().enumerate() {
         let [x, y] = canvas.pixel_of(point);
-        text::write(&mut picture, &format!("e{i}"), [x, y - 0.5 * text::height(FONT) as f32], FONT, Align::Middle);
+        text::write(&mut picture, &format!("e{i}"), [x, y - 0.5 * text::height(FONT) as f32], FONT);
     }
     picture
 }
@@ -146,8 +146,11 @@ fn lay(canvas: &mut Canvas, corners: [Point; 4], colour: Rgb) {
     (0..4).for_each(|i| canvas.line([corners[i], corners[(i + 1) % 4]], LINE, colour, false));
 }
 
-/// The projected areas of the planes tried (figure 4), the chosen one marked.
-pub fn areas(canonical: &CanonicalFrame) -> Pixmap {
+/// The projected areas of the planes tried (figure 4), the chosen one marked, as a PNG file.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn areas(canonical: &CanonicalFrame) -> io::Result<Vec<u8>> {
     let sweep = &canonical.sweep;
     area_curve(&sweep.angles, &sweep.areas, sweep.chosen)
 }

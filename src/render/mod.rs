@@ -1,7 +1,7 @@
 //! Pictures of models: shaded, anti-aliased, hidden surfaces hidden.
 //!
 //! Known to `geometry`, `brep` and (in [`figures`]) the outputs of the stages. [`shaded`] draws a mesh by a z-buffer
-//! with more samples than pixels; PNGs are encoded by tiny-skia.
+//! with more samples than pixels; PNGs are encoded by tiny-skia, and curves drawn by kuva.
 
 mod camera;
 mod canvas;

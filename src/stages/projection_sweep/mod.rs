@@ -2,9 +2,9 @@
 //!
 //! In: the model's mesh and its symmetries. Out: a [`CanonicalFrame`]: the normal of the symmetry plane, the normal
 //! of the plane of smallest projected area among those that contain it, and their cross product.
-//! Method: the paper's section V. The default measures the projected areas by exact spans ([`slices`]), turns through
+//! Method: the paper's section V. The default measures the projected areas by exact spans (`slices`), turns through
 //! all 180 planes from a direction that moves with the model, and refines the best angles by golden section; the
-//! paper's profile turns 90 planes from an arbitrary direction and counts pixels ([`pixels`]).
+//! paper's profile turns 90 planes from an arbitrary direction and counts pixels (`pixels`).
 //! Without a symmetry the first axis comes from a fallback frame: the rectilinear one (Lian et al. 2010) where the
 //! model is rectilinear, else continuous PCA (Vranic 2001); of its three axes the one with the smallest shadow, the
 //! same preference by which stage 6 ranks equal symmetries.
