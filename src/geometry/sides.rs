@@ -60,7 +60,7 @@ impl Neighbours {
 /// The middle of a cell and the angle from there to its farthest corner.
 fn cone(cell: usize) -> (Vector, f64) {
     let bounds = [-1.0, -PARTED, PARTED, 1.0];
-    let main = if cell / 9 % 2 == 0 { 1.0 } else { -1.0 };
+    let main = if (cell / 9).is_multiple_of(2) { 1.0 } else { -1.0 };
     let (i, j) = (cell % 9 / 3, cell % 3);
     let corner = |k: usize| {
         let mut d = Vector::zeros();

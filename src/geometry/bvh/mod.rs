@@ -79,9 +79,9 @@ impl Node {
     #[inline]
     fn squared_distances(&self, p: &[f32; 3]) -> [f32; WIDE] {
         let mut sum = [0.0; WIDE];
-        for axis in 0..3 {
+        for (axis, p) in p.iter().enumerate() {
             for (i, sum) in sum.iter_mut().enumerate() {
-                let (below, above) = (self.low[axis][i] - p[axis], p[axis] - self.high[axis][i]);
+                let (below, above) = (self.low[axis][i] - p, p - self.high[axis][i]);
                 let outside = if below > above { below } else { above };
                 let outside = if outside > 0.0 { outside } else { 0.0 };
                 *sum += outside * outside;

@@ -125,7 +125,8 @@ impl<'a> FaceSamples<'a> {
         let (mut outside, mut recent) = (0, Recent::default());
         for (p, n) in samples.iter() {
             let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
-            let mut within = |radius| field.touches((&image, &normal), radius, &mut recent, |f| faces.binary_search(&f).is_ok());
+            let mut within =
+                |radius| field.touches((&image, &normal), radius, &mut recent, |f| faces.binary_search(&f).is_ok());
             if within(near) {
                 continue;
             }
