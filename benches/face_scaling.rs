@@ -31,7 +31,8 @@ const STAGES: [&str; 8] = ["parse", "corners", "pairs", "isometry", "validate", 
 
 fn main() -> std::io::Result<()> {
     let mut words: Vec<String> = std::env::args().skip(1).collect();
-    let folder = words.iter().position(|w| w == "--write").map(|at| words.drain(at..at + 2).last().unwrap_or_default());
+    let folder =
+        words.iter().position(|w| w == "--write").map(|at| words.drain(at..at + 2).next_back().unwrap_or_default());
     let most = words.iter().find_map(|w| w.parse().ok()).unwrap_or(usize::MAX);
     let kinds = KINDS.iter().filter(|(name, _)| words.iter().all(|w| w.parse::<usize>().is_ok() || w == name));
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global().expect("the first pool");
