@@ -19,6 +19,7 @@ main:
 lint:
     cargo fmt --check
     cargo clippy --release --all-targets -- -D warnings
+    RUSTDOCFLAGS="-D warnings" cargo doc --release --no-deps
 
 # Benchmarks (ratios in one run).
 bench:

@@ -7,13 +7,15 @@
 use std::error::Error;
 use std::time::Instant;
 
+use symalign::alignment::{cpca, npca, pca};
 use symalign::brep::measure::{Measures, measure};
 use symalign::brep::{Mesh, Model, tessellate};
 use symalign::cancel::Cancel;
+use symalign::geometry::Aabb;
 use symalign::stages::parse::{Options, read};
 
 const COLUMNS: &str = "path bytes ok solids faces edges area_mm2 volume_mm3 xmin ymin zmin xmax ymax zmax cx cy cz \
-                       scan_s read_s mesh_s why";
+                       scan_s read_s mesh_s frames_s why";
 
 fn main() -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
@@ -49,9 +51,12 @@ fn facts(bytes: &[u8]) -> Result<Vec<String>, String> {
         tessellate::tessellate(&reading.model, &fineness, &cancel).map_err(|_| "cancelled".to_owned())?;
     let mesh_s = started.elapsed().as_secs_f64();
     let measures = measure(&reading.model, &mesh);
+    let started = Instant::now();
+    std::hint::black_box((pca::axes(&mesh), cpca::axes(&mesh), npca::axes(&mesh), Aabb::of(&mesh.points)));
+    let frames_s = started.elapsed().as_secs_f64();
     let why = reading.skipped.iter().chain(&skipped).map(|s| format!("#{}: {}", s.entity, s.why));
     let mut row = counts(&reading.model, &mesh);
-    row.extend(numbers(&measures, [scan_s, read_s, mesh_s]));
+    row.extend(numbers(&measures, [scan_s, read_s, mesh_s, frames_s]));
     row.push(why.take(3).collect::<Vec<_>>().join("; "));
     Ok(row)
 }
@@ -64,7 +69,7 @@ fn counts(model: &Model, mesh: &Mesh) -> Vec<String> {
     vec!["1".into(), solids.to_string(), mesh.faces.len().to_string(), edges.to_string()]
 }
 
-fn numbers(measures: &Measures, seconds: [f64; 3]) -> Vec<String> {
+fn numbers(measures: &Measures, seconds: [f64; 4]) -> Vec<String> {
     let (low, high, centre) = (measures.bounds.min, measures.bounds.max, measures.centroid);
     let size = [measures.area, measures.volume];
     let all = size.iter().chain(low.iter()).chain(high.iter()).chain(centre.iter()).chain(&seconds);

@@ -26,6 +26,8 @@ import os
 import sys
 from collections import defaultdict
 
+from reading import corners
+
 LIMITS = {"area": 0.005, "triangles": 0.03, "box": 0.002}
 UNSEEN = {"area": 1e-6, "triangles": 1e-4, "box": 0.0}
 STEP = (".step", ".stp", ".p21")
@@ -98,14 +100,14 @@ def face_facts(face):
     BRepGProp.SurfaceProperties_s(face, adaptive, 1e-5, False)
     unsure = not abs(abs(adaptive.Mass()) - area) <= 0.002 * area
     edges = edge_box(face) if kind in FREE_FORM else box
-    beyond = edges.IsVoid() or box.IsVoid() or distance(edges.Get(), box.Get()) > 1e-3 * box.SquareExtent() ** 0.5
+    beyond = edges.IsVoid() or box.IsVoid() or distance(corners(edges), corners(box)) > 1e-3 * box.SquareExtent() ** 0.5
     if unsure or beyond:
         mesh_area, mesh_box = triangles(face, 0.001 * area**0.5)
         area = mesh_area if unsure and mesh_area else area
         box = mesh_box if beyond and mesh_box else box
     row = {"kind": kind, "area": area, "cx": c.X(), "cy": c.Y(), "cz": c.Z()}
     if not box.IsVoid():
-        row.update(zip(CORNERS, box.Get()))
+        row.update(zip(CORNERS, corners(box)))
     return row
 
 
@@ -115,6 +117,7 @@ def read(path):
     from OCP.TopAbs import TopAbs_FACE
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
+    to_face = getattr(TopoDS, "Face_s", None) or TopoDS.Face
 
     reader = STEPControl_Reader()
     if reader.ReadFile(path) != IFSelect_RetDone:
@@ -124,7 +127,7 @@ def read(path):
         return
     e = TopExp_Explorer(reader.OneShape(), TopAbs_FACE)
     while e.More():
-        yield TopoDS.Face_s(e.Current())
+        yield to_face(e.Current())
         e.Next()
 
 

@@ -13,7 +13,7 @@ use symalign::stages::isometry::isometry;
 use symalign::stages::merge::merge;
 use symalign::stages::pair_match::pair_match;
 use symalign::stages::parse::parse;
-use symalign::stages::projection_sweep::projection_sweep;
+use symalign::stages::projection_sweep::{self as sweep, projection_sweep};
 use symalign::stages::validate::validate;
 
 const MODELS: [&str; 3] = ["airplane/biplane.step", "household/mug.step", "vehicle/sedan.step"];
@@ -48,6 +48,10 @@ fn model(criterion: &mut Criterion, name: &str, bytes: &[u8]) {
     let validated = measured!(validate, &parsed, &outlines, &matches, &candidates);
     let symmetries = measured!(merge, &parsed, &outlines, &matches, &validated);
     let canonical = measured!(projection_sweep, &parsed, &symmetries);
+    // The same 180 planes by counting pixels, without refinement.
+    let pixels = sweep::Options { area_by: sweep::AreaBy::Pixels, refine: false, ..Default::default() };
+    let by_pixels = || projection_sweep(&parsed, &symmetries, &pixels, &Cancel::new()).expect("as by spans");
+    criterion.bench_function(&format!("projection_sweep by pixels/{name}"), |b| b.iter(|| black_box(by_pixels())));
     measured!(descriptor, &parsed.mesh, &parsed.measures, &canonical.frame);
 }
 

@@ -3,9 +3,18 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Says to the work on one model that it should stop: its time is over or the run was interrupted.
+use crate::memory::Account;
+
+/// Says to the work on one model that it should stop: it passed a limit or the run ends. All that work on the model
+/// hold it, so the memory they take is counted here.
 #[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+pub struct Cancel(Arc<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    cancelled: AtomicBool,
+    account: Account,
+}
 
 impl Cancel {
     /// Never cancelled unless [`Cancel::cancel`] is called.
@@ -15,12 +24,17 @@ impl Cancel {
 
     /// Asks the work to stop.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.0.cancelled.store(true, Ordering::Relaxed);
     }
 
     /// Whether the work should stop.
     pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// What the work takes of memory.
+    pub fn account(&self) -> &Account {
+        &self.0.account
     }
 
     /// `Err` when the work should stop, for use with `?` in loops.

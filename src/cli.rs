@@ -102,7 +102,8 @@ pub struct Run {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n\
 \x20 symalign eval --store s --labels labels.csv --out report\n\
-\x20 symalign eval --store s --method symmetry,cpca:phase")]
+\x20 symalign eval --store s --method symmetry,cpca:phase\n\
+\x20 symalign eval --labels psb.cla --matrix theirs=theirs.matrix      results of others")]
 pub struct Eval {
     /// Folder of the store [default: store; none where the results of others are given]
     #[arg(long, value_name = "DIR")]

@@ -88,13 +88,22 @@ fn view_under_turns(a: &[f32], b: &[f32]) -> [[f64; 2]; 2] {
 
 /// Squared distances of complex rows: as they are, and with one of them conjugate.
 fn squared_both(a: &[f32], b: &[f32]) -> [f64; 2] {
-    let (mut plain, mut conjugate) = (0.0, 0.0);
-    for (p, q) in a.chunks_exact(2).zip(b.chunks_exact(2)) {
-        let real = (f64::from(p[0]) - f64::from(q[0])).powi(2);
-        plain += real + (f64::from(p[1]) - f64::from(q[1])).powi(2);
-        conjugate += real + (f64::from(p[1]) + f64::from(q[1])).powi(2);
+    let (a, rest_of_a) = a.as_chunks::<LANES>();
+    let (b, rest_of_b) = b.as_chunks::<LANES>();
+    // real and imaginary parts by turns, for differences and sums; the sums of real parts are not needed
+    let (mut minus, mut plus) = ([0.0; LANES], [0.0; LANES]);
+    let mut add = |lane: usize, p: f32, q: f32| {
+        let (p, q) = (f64::from(p), f64::from(q));
+        minus[lane] += (p - q).powi(2);
+        plus[lane] += (p + q).powi(2);
+    };
+    for (p, q) in a.iter().zip(b) {
+        (0..LANES).for_each(|lane| add(lane, p[lane], q[lane]));
     }
-    [plain, conjugate]
+    rest_of_a.iter().zip(rest_of_b).enumerate().for_each(|(lane, (p, q))| add(lane, *p, *q));
+    let of = |lanes: &[f64; LANES], first: usize| lanes.iter().skip(first).step_by(2).sum::<f64>();
+    let real = of(&minus, 0);
+    [real + of(&minus, 1), real + of(&plus, 1)]
 }
 
 #[cfg(test)]

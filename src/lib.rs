@@ -55,6 +55,7 @@ pub mod error;
 pub mod evaluate;
 pub mod geometry;
 pub mod inspect;
+pub mod memory;
 pub mod pipeline;
 pub mod render;
 pub mod rotations;

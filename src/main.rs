@@ -3,13 +3,20 @@
 mod cli;
 mod commands;
 
+use std::alloc::System;
 use std::process::ExitCode;
 
 use clap::Parser;
+use symalign::memory::Counting;
 
 use cli::{Cli, Command, Exit};
 
+/// Counts what each model takes, for the setting `limits.model_memory_mb`.
+#[global_allocator]
+static MEMORY: Counting<System> = Counting(System);
+
 fn main() -> ExitCode {
+    symalign::memory::give_back_large_pieces();
     let ended = match Cli::parse().command {
         Command::Run(args) => commands::run::run(&args),
         Command::Eval(args) => commands::eval::eval(&args),

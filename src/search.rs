@@ -86,16 +86,12 @@ impl<'a> Rows<'a> {
     /// The rows of `name`.
     ///
     /// # Errors
-    /// A frame that the store does not hold, named with those that it does.
+    /// A frame that the store does not hold, named with those that it does; damage.
     pub fn of(store: &'a Store, name: Name) -> Result<Self> {
         let (values, length) = match name.kind {
-            Kind::Magnitude | Kind::Swapped => (store.magnitudes(name.frame), MAGNITUDES),
-            Kind::Phase => (store.phases(name.frame), PHASES),
+            Kind::Magnitude | Kind::Swapped => (store.magnitudes(name.frame)?, MAGNITUDES),
+            Kind::Phase => (store.phases(name.frame)?, PHASES),
         };
-        let values = values.ok_or_else(|| {
-            let known: Vec<_> = store.methods().iter().map(|method| method.name()).collect();
-            RunError::Usage(format!("the store has no frame `{}`, only {}", name.frame.name(), known.join(", ")))
-        })?;
         Ok(Self { values, length, kind: name.kind })
     }
 

@@ -25,7 +25,8 @@ pub enum Profile {
 }
 
 /// Limits for one model, so that one file cannot hold up or bring down a run of thousands. They do not count as
-/// settings that results depend on: raise them and `run --retry-failed`.
+/// settings that results depend on: raise them and `run --retry-failed`. Only whether a model fails depends on them, and
+/// for seconds and memory on the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Limits {
@@ -37,8 +38,11 @@ pub struct Limits {
     pub triangles: usize,
     /// Seconds of computing for one model; 60 is a hundred times the mean.
     pub seconds: f64,
-    /// Memory for all models in flight together, MB, as estimated from their file sizes; 0: half of the machine's. A
-    /// model waits for room; one that needs more than all of it runs alone.
+    /// Memory for one model, MB; 0: as much as for all together. Counted while it is computed on.
+    pub model_memory_mb: u64,
+    /// Memory for all models in flight together, MB; 0: half of what the machine, or the control group, has. A model
+    /// waits until there is room, as estimated from its size and counted for those before it; one that needs more than
+    /// all of it runs alone.
     pub memory_mb: u64,
     /// How many times its own size an archive may unpack to. STEP text shrinks 5 to 20 times.
     pub expansion: u64,
@@ -46,7 +50,15 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { bytes: 1 << 30, faces: 1_000_000, triangles: 20_000_000, seconds: 60.0, memory_mb: 0, expansion: 1000 }
+        Self {
+            bytes: 1 << 30,
+            faces: 1_000_000,
+            triangles: 20_000_000,
+            seconds: 60.0,
+            model_memory_mb: 0,
+            memory_mb: 0,
+            expansion: 1000,
+        }
     }
 }
 
@@ -132,7 +144,7 @@ impl Settings {
             store: "store".into(),
             labels: None,
             report: "report".into(),
-            methods: Method::ALL.to_vec(),
+            methods: Method::USUAL.to_vec(),
             jobs: 0,
             random_pose: None,
             workers: BTreeMap::new(),

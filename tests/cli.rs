@@ -92,3 +92,15 @@ fn damage_is_found_and_told_with_its_place() {
     assert_eq!(code(&output), 2);
     assert!(stderr(&output).contains("Frames of pca"), "{}", stderr(&output));
 }
+
+#[test]
+fn every_command_has_examples_and_a_manual_page() {
+    let dir = tempfile::tempdir().unwrap();
+    assert_eq!(code(&run(dir.path(), &["man", "man1"])), 0);
+    for command in ["run", "eval", "query", "inspect", "align", "symmetries", "store", "completions", "man"] {
+        let help = stdout(&run(dir.path(), &[command, "--help"]));
+        assert!(help.contains("Example") && help.contains(&format!("symalign {command} ")), "{help}");
+        let page = std::fs::read_to_string(dir.path().join(format!("man1/symalign-{command}.1"))).unwrap();
+        assert!(page.starts_with(".ie") && page.contains("Example"), "{command}: {page}");
+    }
+}

@@ -128,6 +128,38 @@ fn methods_are_chosen_by_name() {
     assert!(evaluated(&["magic"]).is_err());
 }
 
+/// The peak of this process's memory in bytes, where the system tells it.
+fn peak() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(1024 * line.trim().trim_end_matches(" kB").parse::<usize>().ok()?)
+}
+
+#[test]
+#[ignore = "minutes, and gigabytes of matrix: SYMALIGN_MODELS=20000 cargo test --release --test evaluate_report -- --ignored --nocapture"]
+fn thousands_of_models_fit_into_memory_and_the_page() {
+    let models: usize = std::env::var("SYMALIGN_MODELS").map_or(20_000, |n| n.parse().unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let classes: Vec<_> = (0..models / 10).map(|i| (format!("class-{i:04}"), 10)).collect();
+    synthetic::of(folder.path(), &classes);
+    let store = Store::open(folder.path()).unwrap();
+    let out = folder.path().join("out");
+    let options = Options { methods: vec!["symmetry:swapped".into()], ..quick() };
+    let (before, start) = (peak(), std::time::Instant::now());
+    let evaluation = evaluate::report(&Input::of_store(&store, labels(folder.path())), &options, &out).unwrap();
+    let size = |name: &str| out.join(name).metadata().unwrap().len() as usize;
+    let (matrix, page) = (size("symmetry-swapped.matrix"), size("report.html"));
+    println!("{models} models: {:.0?}, mAP {}", start.elapsed(), evaluation.methods[0].summary.micro.ap);
+    println!(
+        "matrix {matrix}, run {}, page {page}, peak {before:?} -> {:?}",
+        size("symmetry-swapped.run.trec"),
+        peak()
+    );
+    assert_eq!(matrix, 4 * models * models);
+    assert!(page < 6_000_000);
+    assert!(peak().is_none_or(|peak| peak < matrix / 2 + 500_000_000), "far less than the matrix");
+}
+
 #[test]
 fn a_model_of_the_store_is_its_own_nearest() {
     let folder = tempfile::tempdir().unwrap();
@@ -141,7 +173,8 @@ fn a_model_of_the_store_is_its_own_nearest() {
         assert!(hits.windows(2).all(|pair| pair[0].distance <= pair[1].distance));
         assert!((hits[1].views.iter().sum::<f64>() - hits[1].distance).abs() < 1e-12);
         let page = folder.path().join("page.html");
-        let asked = Asked { model: "<mine>.step", thumbnail: Some(store.thumbnail(5)), method: &name.to_string() };
+        let asked =
+            Asked { model: "<mine>.step", thumbnail: Some(store.thumbnail(5).unwrap()), method: &name.to_string() };
         search::write_page(&page, &store, &asked, &hits).unwrap();
         let page = std::fs::read_to_string(page).unwrap();
         assert_eq!(page.matches("data:image/png;base64,").count(), 5);

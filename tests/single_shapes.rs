@@ -41,7 +41,7 @@ fn folder() -> PathBuf {
 fn shapes(set: &str) -> Vec<(String, Vec<u8>)> {
     let limits = archive::Limits { bytes: 1 << 24, expansion: 1000 };
     let mut all = Vec::new();
-    archive::visit(&[folder().join(format!("{set}.tar.xz"))], &limits, &mut |member| {
+    archive::visit(&[folder().join(format!("{set}.tar.xz"))], &limits, &archive::no_wait, &mut |member| {
         let name = member.id.rsplit(['!', '/']).next().unwrap().to_owned();
         all.push((name, member.bytes.unwrap()));
         ControlFlow::Continue(())

@@ -4,14 +4,19 @@
 //! Known to `geometry` and `brep` only; stage 7 takes its fallback frames from here.
 
 pub mod cpca;
+mod hull;
+pub mod mbb;
+pub mod mpa;
 pub mod npca;
 pub mod pca;
+pub mod prst;
 pub mod rectilinearity;
 #[cfg(test)]
 pub(crate) mod shapes;
 
 use crate::brep::Mesh;
 use crate::brep::measure::Measures;
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Frame, Isometry, Matrix, Point, Vector, any_perpendicular};
 
 /// A way to find a model's canonical frame.
@@ -28,11 +33,33 @@ pub enum Method {
     Npca,
     /// The file's own axes, carried along by `--random-pose`: the frame an author chose.
     File,
+    /// The bounding box of least volume.
+    Mbb,
+    /// The frame in which the faces are most nearly along the axes (Lian).
+    Rectilinearity,
+    /// The directions of least projected area (Johan).
+    Mpa,
+    /// The principal axes of the planar-reflective symmetry transform (Podolak).
+    Prst,
 }
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 5] = [Self::Symmetry, Self::Pca, Self::Cpca, Self::Npca, Self::File];
+    pub const ALL: [Self; 9] = [
+        Self::Symmetry,
+        Self::Pca,
+        Self::Cpca,
+        Self::Npca,
+        Self::File,
+        Self::Mbb,
+        Self::Rectilinearity,
+        Self::Mpa,
+        Self::Prst,
+    ];
+
+    /// What a run computes where nothing else is asked for: the paper's comparison and the authors' poses. The others
+    /// cost more than the rest of the method together.
+    pub const USUAL: [Self; 5] = [Self::Symmetry, Self::Pca, Self::Cpca, Self::Npca, Self::File];
 
     /// The name in settings, stores and reports.
     pub fn name(self) -> &'static str {
@@ -42,22 +69,56 @@ impl Method {
             Self::Cpca => "cpca",
             Self::Npca => "npca",
             Self::File => "file",
+            Self::Mbb => "mbb",
+            Self::Rectilinearity => "rectilinearity",
+            Self::Mpa => "mpa",
+            Self::Prst => "prst",
         }
     }
 }
 
+/// What frames are made from beside the mesh.
+pub struct Given<'a> {
+    /// Of the mesh: the centroid is the origin, D the unit of tolerances.
+    pub measures: &'a Measures,
+    /// The frame that stage 7 found.
+    pub symmetry: &'a Frame,
+    /// The motion that the model was given after reading.
+    pub pose: &'a Isometry,
+    /// Measures projected areas.
+    pub shadows: &'a mpa::Shadows<'a>,
+}
+
 /// The frame of a model by `method`, its origin at the area centroid (for [`Method::Symmetry`] where stage 7 put it).
-///
-/// `symmetry` is the frame that stage 7 found; `pose` is the motion that the model was given after reading.
-pub fn frame(method: Method, mesh: &Mesh, measures: &Measures, symmetry: &Frame, pose: &Isometry) -> Frame {
+pub fn frame(method: Method, mesh: &Mesh, given: &Given, cancel: &Cancel) -> Result<Frame, Cancelled> {
+    let measures = given.measures;
     let axes = match method {
-        Method::Symmetry => return *symmetry,
+        Method::Symmetry => return Ok(*given.symmetry),
         Method::Pca => pca::axes(mesh),
         Method::Cpca => cpca::axes(mesh),
         Method::Npca => npca::axes(mesh),
-        Method::File => [0, 1, 2].map(|i| pose.rotation.column(i).into_owned()),
+        Method::File => [0, 1, 2].map(|i| given.pose.rotation.column(i).into_owned()),
+        Method::Mbb => mbb::axes(mesh, measures.tolerance.size(), cancel)?,
+        Method::Rectilinearity => rectilinearity::rectilinearity(mesh).axes,
+        Method::Mpa => mpa::axes(mesh, given.shadows, cancel)?,
+        Method::Prst => prst::axes(mesh, measures, cancel)?,
     };
-    Frame { axes, origin: measures.centroid }
+    Ok(Frame { axes, origin: measures.centroid })
+}
+
+/// Axes in order of falling `keys`; of keys that differ by less than `tie` (a share of the larger one), the axis
+/// along which the surface varies more comes first.
+pub(crate) fn ordered(mesh: &Mesh, axes: [Vector; 3], keys: [f64; 3], tie: f64) -> [Vector; 3] {
+    let covariance = cpca::covariance(mesh);
+    let variance = |i: usize| axes[i].dot(&(covariance * axes[i]));
+    let mut left = vec![0, 1, 2];
+    let mut next = || {
+        let most = left.iter().map(|&i| keys[i]).fold(f64::NEG_INFINITY, f64::max);
+        let tied = (0..left.len()).filter(|&at| keys[left[at]] >= most - tie * most.abs());
+        let first = tied.max_by(|&a, &b| variance(left[a]).total_cmp(&variance(left[b]))).unwrap_or(0);
+        axes[left.remove(first)]
+    };
+    [next(), next(), next()]
 }
 
 /// Two eigenvalues closer than this share of the largest count as equal: rounding decides between their axes.
@@ -117,8 +178,9 @@ mod tests {
             translation: Vector::new(1.0, 2.0, 3.0),
             chirality: crate::geometry::Chirality::Proper,
         };
-        let own = Frame { axes: [Vector::x(), Vector::y(), Vector::z()], origin: Point::origin() };
-        let found = frame(Method::File, &mesh, &measures, &own, &pose);
+        let symmetry = Frame { axes: [Vector::x(), Vector::y(), Vector::z()], origin: Point::origin() };
+        let given = Given { measures: &measures, symmetry: &symmetry, pose: &pose, shadows: &|_, _, _| Err(Cancelled) };
+        let found = frame(Method::File, &mesh, &given, &Cancel::new()).unwrap();
         assert!((found.axes[2] - turn * Vector::z()).norm() < 1e-15);
     }
 

@@ -10,6 +10,10 @@ use super::{principal_axes, triangles};
 
 /// Principal axes of the normals, the direction that most area faces first.
 pub fn axes(mesh: &Mesh) -> [Vector; 3] {
-    let covariance: Matrix = triangles(mesh).map(|(_, normal, area)| area * normal * normal.transpose()).sum();
-    principal_axes(&covariance)
+    principal_axes(&covariance(mesh))
+}
+
+/// Sum of S n n^T over the triangles, mm^2: along a unit vector, how much of the surface faces that way.
+pub fn covariance(mesh: &Mesh) -> Matrix {
+    triangles(mesh).map(|(_, normal, area)| area * normal * normal.transpose()).sum()
 }

@@ -55,10 +55,11 @@ fn projected(normals: &[Vector], axes: &[Vector; 3]) -> f64 {
 }
 
 /// One normal times its area for each distinct direction, opposite ones joined, largest first.
-fn weighted_normals(mesh: &Mesh) -> Vec<Vector> {
+pub(super) fn weighted_normals(mesh: &Mesh) -> Vec<Vector> {
+    let axes = cpca::axes(mesh);
     let mut grid = FINEST_GRID;
     loop {
-        let merged = merge_normals(mesh, grid);
+        let merged = merge_normals(mesh, &axes, grid);
         if merged.len() <= MOST_NORMALS {
             return merged;
         }
@@ -66,15 +67,16 @@ fn weighted_normals(mesh: &Mesh) -> Vec<Vector> {
     }
 }
 
-fn merge_normals(mesh: &Mesh, grid: f64) -> Vec<Vector> {
+/// Joins the normals in each cell of a grid that turns with the principal axes.
+fn merge_normals(mesh: &Mesh, axes: &[Vector; 3], grid: f64) -> Vec<Vector> {
     let mut keyed: Vec<_> = triangles(mesh)
         .map(|(_, normal, area)| {
-            let cell = (normal * grid).map(|c| c.round() as i32);
+            let cell = axes.map(|axis| (axis.dot(&normal) * grid).round() as i32);
             let negative = cell.iter().find(|c| **c != 0).is_some_and(|c| *c < 0);
-            if negative { (-cell, -normal * area) } else { (cell, normal * area) }
+            if negative { (cell.map(|c| -c), -normal * area) } else { (cell, normal * area) }
         })
         .collect();
-    keyed.sort_by_key(|(cell, _)| [cell.x, cell.y, cell.z]);
+    keyed.sort_by_key(|(cell, _)| *cell);
     let same = keyed.chunk_by(|a, b| a.0 == b.0);
     let mut merged: Vec<Vector> = same.map(|chunk| chunk.iter().map(|(_, n)| n).sum()).collect();
     merged.sort_by(|a, b| b.norm_squared().total_cmp(&a.norm_squared()));

@@ -72,11 +72,24 @@ impl Read for Failing {
     }
 }
 
-/// All bytes of `reader`, if they are no more than `limit`.
-pub fn read_limited(reader: impl Read, limit: u64) -> Result<Vec<u8>, String> {
+/// All bytes of `reader`, if they are no more than `limit`. About `expected` are thought to come; `room` is asked before
+/// these are read, and again each time that twice as many come.
+pub fn read_limited(
+    mut reader: impl Read,
+    expected: u64,
+    limit: u64,
+    mut room: impl FnMut(u64) -> Result<(), String>,
+) -> Result<Vec<u8>, String> {
+    let most = limit.saturating_add(1);
     let mut bytes = Vec::new();
-    let read = reader.take(limit.saturating_add(1)).read_to_end(&mut bytes);
-    read.map_err(|e| format!("cannot be read: {e}"))?;
+    let mut granted = 0;
+    while bytes.len() as u64 == granted && granted < most {
+        // One more than is expected, to see that it ends there.
+        granted = expected.saturating_add(1).max(2 * granted).min(most);
+        room(granted)?;
+        let part = reader.by_ref().take(granted - bytes.len() as u64).read_to_end(&mut bytes);
+        part.map_err(|e| format!("cannot be read: {e}"))?;
+    }
     if bytes.len() as u64 > limit {
         return Err(format!("larger than {limit} bytes (setting limits.bytes)"));
     }

@@ -39,13 +39,22 @@ pub struct Member {
 /// What is called for each member; `Break` ends the visit.
 pub type Each<'a> = dyn FnMut(Member) -> ControlFlow<()> + 'a;
 
+/// What is asked before a member of so many bytes is read, and again where it unpacks to more; may wait until there is
+/// room. `Break` ends the visit.
+pub type Room<'a> = dyn Fn(u64) -> ControlFlow<()> + 'a;
+
+/// [`Room`] without end.
+pub fn no_wait(_: u64) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
 /// Visits all models of `inputs`: files, folders (recursive, in the order of the names), archives, and `-` for a tar
 /// stream on standard input. With several inputs, ids start with the input's name.
 ///
 /// Errors: an input that is not there. All else is the matter of one member.
-pub fn visit(inputs: &[PathBuf], limits: &Limits, each: &mut Each) -> Result<()> {
+pub fn visit(inputs: &[PathBuf], limits: &Limits, room: &Room, each: &mut Each) -> Result<()> {
     for (input, prefix) in inputs.iter().zip(prefixes(inputs)) {
-        let mut visit = Visit { limits, each, going: true };
+        let mut visit = Visit { limits, room, each, going: true };
         if input.as_os_str() == "-" {
             visit.tar(&prefix, expand::sniffed(std::io::stdin().lock()), u64::MAX);
         } else {
@@ -75,9 +84,30 @@ pub fn count(inputs: &[PathBuf]) -> (usize, bool) {
     (models, all)
 }
 
+/// What a file that is written while it is read fails with.
+const CHANGED: &str = "it changed while it was read; run again";
+
+/// Of a file, what changes when it is written to.
+struct State {
+    length: u64,
+    modified: Option<std::time::SystemTime>,
+}
+
+impl State {
+    fn of(file: &File) -> std::io::Result<Self> {
+        let meta = file.metadata()?;
+        Ok(Self { length: meta.len(), modified: meta.modified().ok() })
+    }
+
+    fn has_changed(&self, file: &File) -> bool {
+        Self::of(file).is_ok_and(|now| (now.length, now.modified) != (self.length, self.modified))
+    }
+}
+
 /// A visit of one input.
 struct Visit<'a, 'b> {
     limits: &'a Limits,
+    room: &'a Room<'b>,
     each: &'a mut Each<'b>,
     /// Cleared when the caller has had enough.
     going: bool,
@@ -120,33 +150,47 @@ impl Visit<'_, '_> {
     }
 
     fn file(&mut self, path: &Path, id: String) {
-        let opened = File::open(path).and_then(|file| Ok((file.metadata()?.len(), file)));
-        let (size, file) = match opened {
+        let opened = File::open(path).and_then(|file| Ok((State::of(&file)?, file)));
+        let (before, file) = match opened {
             Ok(opened) => opened,
             Err(error) => return self.give(id, Err(format!("cannot be read: {error}"))),
         };
+        let size = before.length;
         match kind_of(&id) {
-            None => self.model(id, Default::default(), file),
-            Some(Kind::Model(packing)) => self.model(id, packing, file),
-            Some(Kind::Zip) => self.zip(&format!("{id}!"), file, size),
-            Some(Kind::SevenZip) => self.seven_zip(&format!("{id}!"), file, size),
-            Some(Kind::Tar(packing)) => match expand::unpacked(packing, file) {
+            None => return self.model_file(id, Default::default(), &file, &before),
+            Some(Kind::Model(packing)) => return self.model_file(id, packing, &file, &before),
+            Some(Kind::Zip) => self.zip(&format!("{id}!"), &file, size),
+            Some(Kind::SevenZip) => self.seven_zip(&format!("{id}!"), &file, size),
+            Some(Kind::Tar(packing)) => match expand::unpacked(packing, &file) {
                 Ok(reader) => self.tar(&format!("{id}!"), reader, size),
-                Err(error) => self.give(id, Err(format!("not an archive: {error}"))),
+                Err(error) => self.give(id.clone(), Err(format!("not an archive: {error}"))),
             },
+        }
+        if before.has_changed(&file) {
+            self.give(id, Err(CHANGED.into()));
         }
     }
 
-    fn model(&mut self, id: String, packing: kind::Packing, reader: impl Read) {
-        let bytes = expand::unpacked(packing, reader).map_err(|e| e.to_string());
-        let bytes = bytes.and_then(|reader| expand::read_limited(reader, self.limits.bytes));
-        self.give(id, bytes);
+    fn model_file(&mut self, id: String, packing: kind::Packing, file: &File, before: &State) {
+        let bytes = self.read(packing, before.length, file);
+        self.give(id, bytes.and_then(|bytes| if before.has_changed(file) { Err(CHANGED.into()) } else { Ok(bytes) }));
+    }
+
+    /// All bytes of a model that is `size` bytes as it lies there.
+    fn read(&mut self, packing: kind::Packing, size: u64, reader: impl Read) -> std::result::Result<Vec<u8>, String> {
+        let room = |bytes| {
+            self.going &= (self.room)(bytes).is_continue();
+            if self.going { Ok(()) } else { Err("the run was stopped".to_owned()) }
+        };
+        let reader = expand::unpacked(packing, reader).map_err(|e| e.to_string())?;
+        expand::read_limited(reader, size, self.limits.bytes, room)
     }
 
     /// A member of an archive whose name is `name`.
-    fn member(&mut self, prefix: &str, name: &str, reader: impl Read) {
+    fn member(&mut self, prefix: &str, name: &str, size: u64, reader: impl Read) {
         if let Some(Kind::Model(packing)) = kind_of(name) {
-            self.model(format!("{prefix}{}", names::cleaned(name)), packing, reader);
+            let bytes = self.read(packing, size, reader);
+            self.give(format!("{prefix}{}", names::cleaned(name)), bytes);
         }
     }
 
@@ -164,7 +208,7 @@ impl Visit<'_, '_> {
                 Ok(entry) if entry.header().entry_type().is_file() => {
                     let name = String::from_utf8_lossy(&entry.path_bytes()).into_owned();
                     let size = entry.size();
-                    self.member(prefix, &name, expand::Whole::new(entry, size));
+                    self.member(prefix, &name, size, expand::Whole::new(entry, size));
                 }
                 Ok(_) => {}
                 Err(error) => return self.broken(prefix, &error),
@@ -172,7 +216,7 @@ impl Visit<'_, '_> {
         }
     }
 
-    fn zip(&mut self, prefix: &str, file: File, size: u64) {
+    fn zip(&mut self, prefix: &str, file: &File, size: u64) {
         let mut archive = match zip::ZipArchive::new(BufReader::new(file)) {
             Ok(archive) => archive,
             Err(error) => return self.broken(prefix, &error),
@@ -185,9 +229,9 @@ impl Visit<'_, '_> {
             let name = archive.name_for_index(i).and_then(|name| Some(name.ok()?.into_owned()));
             match archive.by_index(i) {
                 Ok(member) if member.is_file() && left > 0 => {
-                    left = left.saturating_sub(member.size());
-                    let name = name.unwrap_or_default();
-                    self.member(prefix, &name, member);
+                    let size = member.size();
+                    left = left.saturating_sub(size);
+                    self.member(prefix, &name.unwrap_or_default(), size, member);
                 }
                 Ok(member) if member.is_file() => return self.broken(prefix, &expand::TOO_LARGE),
                 Ok(_) => {}
@@ -196,7 +240,7 @@ impl Visit<'_, '_> {
         }
     }
 
-    fn seven_zip(&mut self, prefix: &str, file: File, size: u64) {
+    fn seven_zip(&mut self, prefix: &str, file: &File, size: u64) {
         let mut archive = match sevenz_rust2::ArchiveReader::new(BufReader::new(file), sevenz_rust2::Password::empty())
         {
             Ok(archive) => archive,
@@ -209,7 +253,7 @@ impl Visit<'_, '_> {
             }
             left = left.saturating_sub(entry.size());
             if !entry.is_directory() {
-                self.member(prefix, entry.name(), &mut *reader);
+                self.member(prefix, entry.name(), entry.size(), &mut *reader);
                 // What a limit left unread must be passed over: the members share one stream.
                 std::io::copy(reader, &mut std::io::sink()).map_err(sevenz_rust2::Error::from)?;
             }

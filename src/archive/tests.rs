@@ -7,7 +7,7 @@ const LIMITS: Limits = Limits { bytes: 100, expansion: 100 };
 /// All ids with their bytes as text, failures as `!reason`.
 fn all(inputs: &[PathBuf]) -> Vec<(String, String)> {
     let mut found = Vec::new();
-    visit(inputs, &LIMITS, &mut |member| {
+    visit(inputs, &LIMITS, &no_wait, &mut |member| {
         let text = match member.bytes {
             Ok(bytes) => String::from_utf8(bytes).unwrap(),
             Err(why) => format!("!{why}"),
@@ -144,9 +144,9 @@ fn the_caller_may_end_a_visit_and_missing_inputs_are_errors() {
         seen += 1;
         ControlFlow::Break(())
     };
-    visit(&[path.clone(), path], &LIMITS, &mut each).unwrap();
+    visit(&[path.clone(), path], &LIMITS, &no_wait, &mut each).unwrap();
     assert_eq!(seen, 1);
-    assert!(visit(&[dir.path().join("none")], &LIMITS, &mut |_| ControlFlow::Continue(())).is_err());
+    assert!(visit(&[dir.path().join("none")], &LIMITS, &no_wait, &mut |_| ControlFlow::Continue(())).is_err());
 }
 
 #[test]
@@ -155,4 +155,68 @@ fn a_bomb_is_stopped() {
     let mut budget = Budget::new(zeros, 1000, 100);
     let error = std::io::copy(&mut budget, &mut std::io::sink()).unwrap_err();
     assert!(error.to_string().contains("limits.expansion"));
+}
+
+#[test]
+fn room_is_asked_before_a_member_is_read_and_as_it_grows() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    std::fs::write(at("a.stp"), vec![b'a'; 60]).unwrap();
+    std::fs::write(at("b.stp.gz"), gzip(&[b'b'; 90])).unwrap();
+    let size = at("b.stp.gz").metadata().unwrap().len();
+    let (asked, given) = (std::cell::RefCell::new(Vec::new()), std::cell::Cell::new(0));
+    let room = |bytes| {
+        asked.borrow_mut().push((given.get(), bytes));
+        ControlFlow::Continue(())
+    };
+    let mut each = |_| {
+        given.set(given.get() + 1);
+        ControlFlow::Continue(())
+    };
+    visit(&[dir.path().to_owned()], &LIMITS, &room, &mut each).unwrap();
+    let growing: Vec<_> = [1, 2, 4, 8].iter().map(|n| (1, (n * (size + 1)).min(101))).collect();
+    let grown = growing.iter().position(|(_, bytes)| *bytes > 90).unwrap();
+    assert_eq!(*asked.borrow(), [&[(0, 61)], &growing[..=grown]].concat());
+}
+
+#[test]
+fn a_visit_that_gets_no_room_ends() {
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["a.stp", "b.stp"] {
+        std::fs::write(dir.path().join(name), "x").unwrap();
+    }
+    let mut given = 0;
+    let mut each = |_| {
+        given += 1;
+        ControlFlow::Continue(())
+    };
+    visit(&[dir.path().to_owned()], &LIMITS, &|_| ControlFlow::Break(()), &mut each).unwrap();
+    assert_eq!(given, 0);
+}
+
+#[test]
+fn a_file_that_changes_while_it_is_read_is_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| std::fs::write(dir.path().join(name), bytes).unwrap();
+    write("a.stp", b"first");
+    write("b.zip", &zip_of(&[("x.stp", "member")]));
+    // The room for a member is asked between the opening of its file and the reading.
+    let asked = std::cell::Cell::new(0);
+    let room = |_| {
+        asked.set(asked.get() + 1);
+        let mut file = std::fs::OpenOptions::new().append(true).open(dir.path().join("a.stp")).unwrap();
+        file.write_all(b", then more").unwrap();
+        let time = std::time::SystemTime::UNIX_EPOCH + std::time::Duration::from_secs(asked.get());
+        std::fs::File::open(dir.path().join("b.zip")).unwrap().set_modified(time).unwrap();
+        ControlFlow::Continue(())
+    };
+    let mut found = Vec::new();
+    let mut each = |member: Member| {
+        found.push((member.id, member.bytes.err()));
+        ControlFlow::Continue(())
+    };
+    visit(&[dir.path().to_owned()], &LIMITS, &room, &mut each).unwrap();
+    let changed = Some(CHANGED.to_owned());
+    let expected = [("a.stp", changed.clone()), ("b.zip!x.stp", None), ("b.zip", changed)];
+    assert_eq!(found, expected.map(|(id, why)| (id.to_owned(), why)));
 }

@@ -25,7 +25,8 @@ pub fn run(args: &Run) -> Result<Exit> {
         stop: &stop,
     };
     pipeline::helpers(settings.busy_limit());
-    let report = pipeline::run(&request, &mut Progress::for_stderr())?;
+    let report =
+        pipeline::run(&request, &mut Progress::for_stderr()).inspect_err(|error| how_to_go_on(error, &settings))?;
     eprintln!("{}", report.summary());
     if report.interrupted {
         eprintln!("interrupted; what is done is kept in {}: run the same command to go on", settings.store.display());
@@ -33,6 +34,18 @@ pub fn run(args: &Run) -> Result<Exit> {
     }
     score(&settings, args, &report)?;
     Ok(if args.strict && !report.failures.is_empty() { Exit::ModelFailed } else { Exit::Done })
+}
+
+/// After an error of a disk, what was done is still there.
+fn how_to_go_on(error: &RunError, settings: &Settings) {
+    let store = &settings.store;
+    let of_store = matches!(error, RunError::File { path, .. } if path.starts_with(store));
+    if of_store && symalign::store::journal_path(store).exists() {
+        eprintln!(
+            "stopped; what is done is kept in {}: when the cause is mended, run the same command to go on",
+            store.display()
+        );
+    }
 }
 
 /// Ends a run with the report, where there are labels and this is the whole of the models.

@@ -5,7 +5,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 use symalign::error::Result;
 use symalign::stages::descriptor::{MAGNITUDES, PHASES};
-use symalign::store::{self, Kind, Section, Store, THUMBNAIL, export};
+use symalign::store::journal::Journal;
+use symalign::store::{self, Damage, Kind, Section, Store, THUMBNAIL, export};
 
 use super::print;
 use crate::cli::{Exit, Format, Store as Args};
@@ -92,21 +93,29 @@ fn list(dir: &Path, failures: bool) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
+/// Checks the published file and the journal, as far as they are there.
 fn verify(dir: &Path) -> Result<Exit> {
-    let store = Store::open(dir)?;
-    let damages = store.verify();
-    for damage in &damages {
-        eprintln!(
-            "{}: damaged: {} at byte {}, {} bytes",
-            store.path().display(),
-            damage.place,
-            damage.offset,
-            damage.length
-        );
+    let journal = store::journal_path(dir);
+    let has_journal = journal.exists();
+    let mut whole = true;
+    if store::published_path(dir).exists() || !has_journal {
+        let store = Store::open(dir)?;
+        whole &= told(store.path(), store.len(), &store.verify());
+    }
+    if has_journal {
+        let (models, damages) = Journal::verify(&journal)?;
+        whole &= told(&journal, models, &damages);
+    }
+    Ok(if whole { Exit::Done } else { Exit::CannotRun })
+}
+
+/// Says what is damaged; true where nothing is.
+fn told(path: &Path, models: usize, damages: &[Damage]) -> bool {
+    for damage in damages {
+        eprintln!("{}: damaged: {damage}", path.display());
     }
     if damages.is_empty() {
-        eprintln!("{}: {} models, all well", store.path().display(), store.len());
-        return Ok(Exit::Done);
+        eprintln!("{}: {models} models, all well", path.display());
     }
-    Ok(Exit::CannotRun)
+    damages.is_empty()
 }

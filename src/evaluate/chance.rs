@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// with 4,000 its standard error is below 0.005 for one class and a fraction of that in the mean.
 const DRAWS: usize = 4_000;
 
-/// The expected results of a random ranking: exact, but for the 11-point curve, which is the mean of [`DRAWS`]
+/// The expected results of a random ranking: exact, but for the 11-point curve, which is the mean of `DRAWS`
 /// rankings drawn from `seed`.
 pub fn random(gallery: &Gallery, seed: u64) -> Summary {
     let others = gallery.len() - 1;

@@ -11,6 +11,7 @@ pub mod plane_index;
 pub mod polygon;
 pub mod principal;
 pub mod revolution;
+pub mod sides;
 pub mod tolerance;
 pub mod transform;
 

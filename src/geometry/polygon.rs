@@ -31,9 +31,41 @@ pub fn winding_number(polygon: &[Point2], p: &Point2) -> i32 {
     winding
 }
 
+/// The convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain).
+pub fn convex_hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    points.dedup();
+    if points.len() < 3 {
+        return points;
+    }
+    let mut hull = Vec::new();
+    push_chain(points.iter(), 0, &mut hull);
+    let upper = hull.len() - 1;
+    hull.truncate(upper);
+    push_chain(points.iter().rev(), upper, &mut hull);
+    hull.pop();
+    hull
+}
+
+fn push_chain<'a>(points: impl Iterator<Item = &'a [f64; 2]>, base: usize, hull: &mut Vec<[f64; 2]>) {
+    let right = |a: [f64; 2], b: [f64; 2], c: &[f64; 2]| (b[0] - a[0]) * (c[1] - b[1]) <= (b[1] - a[1]) * (c[0] - b[0]);
+    for p in points {
+        while hull.len() >= base + 2 && right(hull[hull.len() - 2], hull[hull.len() - 1], p) {
+            hull.pop();
+        }
+        hull.push(*p);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_hull_leaves_out_inner_and_collinear_points() {
+        let points = vec![[0.0, 0.0], [1.0, 1.0], [2.0, 0.0], [1.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]];
+        assert_eq!(convex_hull(points), [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
+    }
 
     fn square() -> Vec<Point2> {
         [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point2::from).to_vec()

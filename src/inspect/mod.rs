@@ -59,7 +59,7 @@ type Visitor<'a> = &'a mut dyn FnMut(String, std::result::Result<Vec<u8>, ModelE
 fn visit(path: &Path, settings: &Settings, each: Visitor) -> Result<()> {
     let (file, member) = split(path);
     let limits = Limits { bytes: settings.limits.bytes, expansion: settings.limits.expansion };
-    archive::visit(std::slice::from_ref(&file), &limits, &mut |found| {
+    archive::visit(std::slice::from_ref(&file), &limits, &archive::no_wait, &mut |found| {
         if member.as_ref().is_some_and(|member| !found.id.ends_with(member)) {
             return ControlFlow::Continue(());
         }

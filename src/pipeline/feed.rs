@@ -77,15 +77,22 @@ impl Feed<'_> {
         let mut ids = HashSet::new();
         let mut going = true;
         let limits = archive::Limits { bytes: self.settings.limits.bytes, expansion: self.settings.limits.expansion };
-        archive::visit(&self.settings.input, &limits, &mut |mut member| {
-            going = !self.stop.load(Ordering::Relaxed);
+        let (budget, bench, stop) = (self.budget, self.bench, self.stop);
+        let told_to_stop = || stop.load(Ordering::Relaxed);
+        let flow = |going| if going { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+        let room = |bytes| {
+            budget.wait_to_read(bytes, &|| bench.memory());
+            flow(!told_to_stop())
+        };
+        archive::visit(&self.settings.input, &limits, &room, &mut |mut member| {
+            going = !told_to_stop();
             if going {
                 make_unique(&mut member.id, &mut ids);
                 going = self.member(member, &mut manifest, outbox);
             }
-            if going { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            flow(going)
         })?;
-        manifest.complete = going && !self.stop.load(Ordering::Relaxed);
+        manifest.complete = going && !told_to_stop();
         Ok(manifest)
     }
 
@@ -118,7 +125,7 @@ impl Feed<'_> {
     }
 
     fn send(&self, job: Job, bytes: Vec<u8>, outbox: &Sender<Parcel<Vec<u8>>>) -> bool {
-        self.budget.take(job.bytes);
+        self.budget.take(job.bytes, &|| self.bench.memory());
         if self.stop.load(Ordering::Relaxed) {
             // Told while it waited for room: this model has not set out.
             self.budget.give_back(job.bytes);

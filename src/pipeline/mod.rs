@@ -5,6 +5,7 @@ mod feed;
 mod guard;
 mod line;
 mod log;
+mod machine;
 mod parcel;
 mod plan;
 mod progress;

@@ -42,13 +42,31 @@ pub fn by_stage(seconds: &Seconds) -> Value {
 struct Clock {
     spent: Seconds,
     running: Option<(Stage, Instant)>,
-    overdue: bool,
+    passed: Option<Passed>,
+}
+
+/// What one model may take.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed {
+    /// Of computing in all stages together.
+    pub time: Duration,
+    /// Bytes of memory at the same time.
+    pub memory: u64,
+}
+
+/// The limit that a model passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passed {
+    Time,
+    Memory,
 }
 
 impl Job {
-    /// A model that has not started.
+    /// A model that has not started: its bytes are in memory.
     pub fn new(number: u64, id: String, hash: Hash, bytes: u64) -> Self {
-        Self { number, id, hash, bytes, cancel: Cancel::new(), clock: Mutex::default() }
+        let cancel = Cancel::new();
+        cancel.account().add(bytes);
+        Self { number, id, hash, bytes, cancel, clock: Mutex::default() }
     }
 
     /// The seconds spent so far in stages that ended.
@@ -61,13 +79,13 @@ impl Job {
         self.clock().running = Some((stage, Instant::now()));
     }
 
-    /// Stops the clock; true where the model had been found overdue.
-    pub fn stop(&self) -> bool {
+    /// Stops the clock; the limit that the model had been found to pass.
+    pub fn stop(&self) -> Option<Passed> {
         let mut clock = self.clock();
         if let Some((stage, since)) = clock.running.take() {
             clock.spent[stage as usize] += since.elapsed().as_secs_f64();
         }
-        clock.overdue
+        clock.passed
     }
 
     /// The stage that is working on the model, and the seconds of all its stages until now.
@@ -77,13 +95,18 @@ impl Job {
         Some((stage, clock.spent.iter().sum::<f64>() + since.elapsed().as_secs_f64()))
     }
 
-    /// Cancels the model if it has been computed on for longer than `limit`.
-    pub fn check_deadline(&self, limit: Duration) {
-        let late = self.running().is_some_and(|(_, seconds)| seconds > limit.as_secs_f64());
-        if late {
-            self.clock().overdue = true;
-            self.cancel.cancel();
-        }
+    /// Cancels the model if it is computed on and takes more than `allowed`.
+    pub fn check(&self, allowed: Allowed) {
+        let Some((_, seconds)) = self.running() else { return };
+        let passed = if seconds > allowed.time.as_secs_f64() {
+            Passed::Time
+        } else if self.cancel.account().bytes() > allowed.memory {
+            Passed::Memory
+        } else {
+            return;
+        };
+        self.clock().passed.get_or_insert(passed);
+        self.cancel.cancel();
     }
 
     fn clock(&self) -> std::sync::MutexGuard<'_, Clock> {

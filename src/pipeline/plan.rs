@@ -2,10 +2,10 @@
 
 use std::io;
 use std::sync::Arc;
-use std::time::Duration;
 
 use crossbeam_channel::{RecvTimeoutError, bounded};
 
+use super::budget::allowed;
 use super::line::Line;
 use super::parcel::{Job, Seconds};
 use super::record::record;
@@ -30,9 +30,9 @@ pub fn stages<'s, 'e>(line: Line<'s, 'e, Vec<u8>>) -> io::Result<Line<'s, 'e, Mo
         .then(Stage::Descriptor, move |job, framed| steps.descriptor(job, framed).map(|described| record(&described)))
 }
 
-/// Runs all stages on one model, within its time limit; also the seconds of each stage.
+/// Runs all stages on one model, within its limits; also the seconds of each stage.
 pub fn describe(id: &str, bytes: Vec<u8>, settings: &Settings) -> (Result<Described, ModelError>, Seconds) {
-    let bench = Bench::new(1, Duration::from_secs_f64(settings.limits.seconds));
+    let bench = Bench::new(1, allowed(settings));
     let hash = *blake3::hash(&bytes).as_bytes();
     let job = Arc::new(Job::new(0, id.to_owned(), hash, bytes.len() as u64));
     bench.enter(&job);
@@ -41,7 +41,7 @@ pub fn describe(id: &str, bytes: Vec<u8>, settings: &Settings) -> (Result<Descri
         let bench = &bench;
         scope.spawn(move || {
             while over.recv_timeout(super::TICK) == Err(RecvTimeoutError::Timeout) {
-                bench.check_deadlines();
+                bench.check_limits();
             }
         });
         let result = in_turn(&job, bytes, Steps(settings), bench);

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crate::error::{Result, RunError};
 use crate::store::journal::Journal;
-use crate::store::{Lock, Store, differences, journal_path, published_path};
+use crate::store::{
+    Damage, Lock, Store, VERSION, differences, journal_path, published_path, version_error, version_of,
+};
 
 /// A store that this process may write.
 pub struct Opened {
@@ -24,6 +26,7 @@ pub fn open(dir: &Path, effective: &str, fresh: bool) -> Result<Opened> {
     if fresh {
         remove(dir, &mut notes)?;
     }
+    check_version(dir)?;
     let journal = match Journal::open(&journal_path(dir))? {
         Some((journal, settings)) => {
             check_settings(dir, &settings, effective)?;
@@ -31,9 +34,10 @@ pub fn open(dir: &Path, effective: &str, fresh: bool) -> Result<Opened> {
         }
         None => taken_over(dir, effective, &mut notes)?,
     };
-    notes.extend(
-        journal.damage().iter().map(|damage| format!("journal: {damage}; the models in them are computed again")),
-    );
+    let again = |damage: &Damage| {
+        format!("{}: damaged: {damage}; what was in it is computed again", journal_path(dir).display())
+    };
+    notes.extend(journal.damage().iter().map(again));
     Ok(Opened { journal, notes, _lock: lock })
 }
 
@@ -44,18 +48,29 @@ fn taken_over(dir: &Path, effective: &str, notes: &mut Vec<String>) -> Result<Jo
     }
     let store = Store::open(dir)?;
     check_settings(dir, store.settings(), effective)?;
-    let mut journal = Journal::create(&journal_path(dir), effective)?;
-    for i in 0..store.len() {
-        journal.append(&store.hash(i), &Ok(store.record(i)?))?;
-    }
-    for failure in store.failures() {
-        if let Some(hash) = failure.hash {
-            journal.append(&hash, &Err(failure.error.clone()))?;
+    let journal = Journal::create_with(&journal_path(dir), effective, &mut |journal| {
+        for i in 0..store.len() {
+            journal.append(&store.hash(i), &Ok(store.record(i)?))?;
         }
-    }
-    journal.commit()?;
+        for failure in store.failures() {
+            if let Some(hash) = failure.hash {
+                journal.append(&hash, &Err(failure.error.clone()))?;
+            }
+        }
+        Ok(())
+    })?;
     notes.push(format!("took over {} models of the published store", journal.len()));
     Ok(journal)
+}
+
+/// A published file of another version is not replaced, even where the journal is ours.
+fn check_version(dir: &Path) -> Result<()> {
+    let path = published_path(dir);
+    match version_of(&path) {
+        Ok(Some(version)) if version != VERSION => Err(RunError::Store { path, why: version_error(version) }),
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(RunError::file(path, error)),
+        _ => Ok(()),
+    }
 }
 
 fn check_settings(dir: &Path, theirs: &str, ours: &str) -> Result<()> {

@@ -2,12 +2,13 @@
 
 use std::collections::HashSet;
 use std::io;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, bounded};
 
-use super::budget::Budget;
+use super::budget::{Budget, allowed, memory_of};
 use super::feed::{Feed, Manifest, Shard};
 use super::line::Line;
 use super::log;
@@ -87,8 +88,8 @@ pub fn run_with(request: &Request, progress: &mut Progress, build: &Build) -> Re
 /// Sets up all threads, and collects on this one until the last parcel has come out.
 fn stream(request: &Request, progress: &mut Progress, build: &Build, collector: &mut Collector) -> Result<Manifest> {
     let settings = request.settings;
-    let bench = Bench::new(settings.busy_limit(), Duration::from_secs_f64(settings.limits.seconds));
-    let budget = Budget::new(settings.busy_limit(), settings.limits.memory_mb);
+    let bench = Bench::new(settings.busy_limit(), allowed(settings));
+    let budget = Budget::new(settings.busy_limit(), memory_of(settings.limits.memory_mb));
     let counters = Counters::default();
     let known = collector.known(request.retry_failed);
     std::thread::scope(|scope| {
@@ -118,24 +119,31 @@ fn watch(
     queues: &[super::line::Queue],
 ) {
     let started = Instant::now();
-    let (models, all) = crate::archive::count(&request.settings.input);
-    let total = (all && request.shard.is_none()).then_some(models as u64);
-    while over.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
-        bench.check_deadlines();
-        let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
-        progress.show(&Snapshot {
-            found: load(&counters.found),
-            total,
-            done: load(&counters.done),
-            failed: load(&counters.failed),
-            known: load(&counters.known),
-            bytes: load(&counters.bytes),
-            elapsed: started.elapsed(),
-            stages: queues.iter().map(|(stage, length)| (*stage, bench.busy(*stage), length())).collect(),
-            slowest: bench.slowest(),
-        });
-    }
-    progress.finish();
+    let total = OnceLock::new();
+    let count = || {
+        let (models, all) = crate::archive::count(&request.settings.input);
+        total.get_or_init(|| (all && request.shard.is_none()).then_some(models as u64));
+    };
+    std::thread::scope(|scope| {
+        // Beside, since a large folder takes its time and the limits of models do not wait.
+        scope.spawn(count);
+        while over.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+            bench.check_limits();
+            let load = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+            progress.show(&Snapshot {
+                found: load(&counters.found),
+                total: total.get().copied().flatten(),
+                done: load(&counters.done),
+                failed: load(&counters.failed),
+                known: load(&counters.known),
+                bytes: load(&counters.bytes),
+                elapsed: started.elapsed(),
+                stages: queues.iter().map(|(stage, length)| (*stage, bench.busy(*stage), length())).collect(),
+                slowest: bench.slowest(),
+            });
+        }
+        progress.finish();
+    });
 }
 
 /// The other end: keeps outcomes.

@@ -2,7 +2,9 @@
 
 use super::parcel::Job;
 use super::random_pose;
-use crate::alignment::{self, Method};
+use crate::alignment::mpa::Sweep;
+use crate::alignment::{self, Given, Method};
+use crate::cancel::Cancelled;
 use crate::geometry::{Chirality, Frame, Isometry, Matrix, Vector};
 use crate::render;
 use crate::settings::Settings;
@@ -12,7 +14,7 @@ use crate::stages::isometry::{Candidates, isometry};
 use crate::stages::merge::{Symmetries, merge};
 use crate::stages::pair_match::{Matches, pair_match};
 use crate::stages::parse::{Parsed, parse};
-use crate::stages::projection_sweep::{CanonicalFrame, projection_sweep};
+use crate::stages::projection_sweep::{CanonicalFrame, Shadows, Slices, projection_sweep};
 use crate::stages::validate::{Validated, validate};
 use crate::stages::{ModelError, Stage};
 
@@ -141,10 +143,16 @@ impl Steps<'_> {
 
     pub fn projection_sweep(self, job: &Job, ranked: Ranked) -> Step<Framed> {
         let Ranked { posed: Posed { parsed, pose }, symmetries } = &ranked;
-        let canonical = projection_sweep(parsed, symmetries, &self.0.projection_sweep, &job.cancel)?;
-        let frame =
-            |&method| (method, alignment::frame(method, &parsed.mesh, &parsed.measures, &canonical.frame, pose));
-        let frames = self.0.methods.iter().map(frame).collect();
+        let (options, cancel) = (&self.0.projection_sweep, &job.cancel);
+        let canonical = projection_sweep(parsed, symmetries, options, cancel)?;
+        let shadows = |axis: &Vector, start: &Vector, slices| {
+            let mut slices = Slices::about(parsed, axis, start, slices, cancel)?;
+            Ok::<Sweep, _>(Box::new(move |angles: &[f64]| slices.areas(angles, cancel)))
+        };
+        let given = Given { measures: &parsed.measures, symmetry: &canonical.frame, pose, shadows: &shadows };
+        let frame = |&method| Ok((method, alignment::frame(method, &parsed.mesh, &given, cancel)?));
+        let frames: Result<_, Cancelled> = self.0.methods.iter().map(frame).collect();
+        let frames = frames.map_err(|c| ModelError::cancelled(Stage::ProjectionSweep, c))?;
         Ok(Framed { ranked, canonical, frames })
     }
 
@@ -152,7 +160,8 @@ impl Steps<'_> {
         let Parsed { mesh, measures, .. } = &framed.ranked.posed.parsed;
         let of = |(_, frame): &(Method, Frame)| descriptor(mesh, measures, frame, &self.0.descriptor, &job.cancel);
         let descriptors = framed.frames.iter().map(of).collect::<Step<_>>()?;
-        let thumbnail = render::thumbnail(mesh, measures, &framed.canonical.frame);
+        let thumbnail = render::thumbnail(mesh, measures, &framed.canonical.frame, &job.cancel)
+            .map_err(|c| ModelError::cancelled(Stage::Descriptor, c))?;
         Ok(Described { framed, descriptors, thumbnail })
     }
 }

@@ -3,12 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::guard::guarded;
-use super::parcel::{Job, Parcel};
+use super::parcel::{Allowed, Job, Parcel, Passed};
 use crate::stages::{ModelError, Stage};
 
 /// Takes parcels, works on those that have not failed, passes all of them on.
@@ -27,27 +26,27 @@ pub fn work<I, O>(
     }
 }
 
-/// Where models are worked on: so many at the same time, each within its time.
+/// Where models are worked on: so many at the same time, each within its limits.
 pub struct Bench {
     /// One token for each model that may be worked on; taken and put back.
     permits: (Sender<()>, Receiver<()>),
-    limit: Duration,
+    allowed: Allowed,
     busy: [AtomicUsize; Stage::ALL.len()],
     in_flight: Mutex<BTreeMap<u64, Arc<Job>>>,
 }
 
 impl Bench {
-    /// `places` models at the same time, `limit` for all stages of one model together.
-    pub fn new(places: usize, limit: Duration) -> Self {
+    /// `places` models at the same time, to each what is `allowed`.
+    pub fn new(places: usize, allowed: Allowed) -> Self {
         let permits = bounded(places.max(1));
         for _ in 0..places.max(1) {
             // There is room for each of them: the channel was made that large.
             let _ = permits.0.try_send(());
         }
-        Self { permits, limit, busy: Default::default(), in_flight: Mutex::default() }
+        Self { permits, allowed, busy: Default::default(), in_flight: Mutex::default() }
     }
 
-    /// Runs a step of a model when a place is free; panics and passed deadlines become failures.
+    /// Runs a step of a model when a place is free; panics and passed limits become failures.
     pub fn work_on<T>(
         &self,
         stage: Stage,
@@ -57,14 +56,18 @@ impl Bench {
         let _permit = Permit::take(&self.permits);
         self.busy[stage as usize].fetch_add(1, Ordering::Relaxed);
         job.start(stage);
-        let result = guarded(stage, step);
-        let overdue = job.stop();
+        let result = job.cancel.account().within(|| guarded(stage, step));
+        let passed = job.stop();
         self.busy[stage as usize].fetch_sub(1, Ordering::Relaxed);
-        if overdue {
-            let limit = self.limit.as_secs_f64();
-            return Err(ModelError::new(stage, format!("time limit of {limit} s passed in stage {}", stage.name())));
-        }
-        result
+        passed.map_or(result, |passed| Err(self.failure(stage, passed)))
+    }
+
+    fn failure(&self, stage: Stage, passed: Passed) -> ModelError {
+        let limit = match passed {
+            Passed::Time => format!("time limit of {} s", self.allowed.time.as_secs_f64()),
+            Passed::Memory => format!("memory limit of {} MB", self.allowed.memory >> 20),
+        };
+        ModelError::new(stage, format!("{limit} passed in stage {}", stage.name()))
     }
 
     /// A model sets out.
@@ -77,9 +80,14 @@ impl Bench {
         self.jobs().remove(&job.number);
     }
 
-    /// Cancels the models whose time is over.
-    pub fn check_deadlines(&self) {
-        self.jobs().values().for_each(|job| job.check_deadline(self.limit));
+    /// Cancels the models that passed a limit.
+    pub fn check_limits(&self) {
+        self.jobs().values().for_each(|job| job.check(self.allowed));
+    }
+
+    /// Bytes that all models in flight take together.
+    pub fn memory(&self) -> u64 {
+        self.jobs().values().map(|job| job.cancel.account().bytes()).sum()
     }
 
     /// Cancels all models in flight.
@@ -127,7 +135,11 @@ impl Drop for Permit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
+    use std::time::{Duration, Instant};
+
+    fn bench(places: usize, seconds: f64) -> Bench {
+        Bench::new(places, Allowed { time: Duration::from_secs_f64(seconds), memory: 1 << 20 })
+    }
 
     fn job(number: u64) -> Arc<Job> {
         Arc::new(Job::new(number, format!("model {number}"), [0; 32], 0))
@@ -135,7 +147,7 @@ mod tests {
 
     #[test]
     fn failures_pass_through_and_panics_become_failures() {
-        let bench = Bench::new(2, Duration::from_secs(60));
+        let bench = bench(2, 60.0);
         let (feed, inbox) = bounded(8);
         let (outbox, results) = bounded(8);
         for (number, load) in [(0, Ok(4)), (1, Err(ModelError::new(Stage::Parse, "torn"))), (2, Ok(0)), (3, Ok(6))] {
@@ -152,7 +164,7 @@ mod tests {
 
     #[test]
     fn no_more_models_are_worked_on_than_there_are_places() {
-        let bench = Bench::new(2, Duration::from_secs(60));
+        let bench = bench(2, 60.0);
         let (now, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
         std::thread::scope(|scope| {
             for number in 0..8 {
@@ -170,28 +182,35 @@ mod tests {
         assert_eq!(most.into_inner(), 2);
     }
 
-    #[test]
-    fn a_model_that_takes_too_long_is_cancelled_and_fails_with_the_limit() {
-        let bench = Bench::new(1, Duration::from_millis(20));
-        let slow = job(0);
-        bench.enter(&slow);
+    /// What a model fails with that goes on until it is cancelled, and takes memory after the first check.
+    fn failure_of_endless_work(bench: &Bench, bytes: u64) -> String {
+        let endless = job(0);
+        bench.enter(&endless);
         let result = std::thread::scope(|scope| {
             let worker = scope.spawn(|| {
-                bench.work_on(Stage::Validate, &slow, || {
+                bench.work_on(Stage::Validate, &endless, || {
+                    endless.cancel.account().add(bytes);
                     let end = Instant::now() + Duration::from_secs(20);
                     while Instant::now() < end {
-                        slow.cancel.check().map_err(|c| ModelError::cancelled(Stage::Validate, c))?;
+                        endless.cancel.check().map_err(|c| ModelError::cancelled(Stage::Validate, c))?;
                         std::thread::sleep(Duration::from_millis(1));
                     }
                     Ok(())
                 })
             });
             while !worker.is_finished() {
-                bench.check_deadlines();
+                bench.check_limits();
                 std::thread::sleep(Duration::from_millis(1));
             }
             worker.join().unwrap()
         });
-        assert_eq!(result.unwrap_err().why, "time limit of 0.02 s passed in stage validate");
+        result.unwrap_err().why
+    }
+
+    #[test]
+    fn a_model_that_takes_too_much_is_cancelled_and_fails_with_the_limit() {
+        assert_eq!(failure_of_endless_work(&bench(1, 0.02), 10), "time limit of 0.02 s passed in stage validate");
+        let too_large = failure_of_endless_work(&bench(1, 15.0), (1 << 20) + 1);
+        assert_eq!(too_large, "memory limit of 1 MB passed in stage validate");
     }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use tiny_skia::{Color, Paint as Fill, Pixmap, PremultipliedColorU8, Rect, Transform};
 
 use crate::brep::PlacedFaceId;
+use crate::cancel::Cancel;
 use crate::geometry::{Frame, Plane, Point};
 use crate::stages::descriptor::silhouette::Silhouette;
 use crate::stages::merge::{Label, Symmetries};
@@ -13,7 +14,7 @@ use crate::stages::parse::Parsed;
 use crate::stages::projection_sweep::CanonicalFrame;
 
 use super::camera::extent;
-use super::text::{self, Align};
+use super::text;
 use super::{Camera, Canvas, GREY, Paint, Rgb, Scene, area_curve, png, shaded};
 
 /// Pixels on a side of a figure.
@@ -50,15 +51,15 @@ pub fn render_all(
     views: &[Silhouette; 3],
 ) -> io::Result<Vec<PathBuf>> {
     let pictures = [
-        ("symmetry", symmetry(parsed, symmetries, &canonical.frame)),
-        ("silhouettes", silhouettes(views)),
-        ("areas", areas(canonical)),
-        ("frame", frame(parsed, &canonical.frame)),
+        ("symmetry", png(&symmetry(parsed, symmetries, &canonical.frame))?),
+        ("silhouettes", png(&silhouettes(views))?),
+        ("areas", areas(canonical)?),
+        ("frame", png(&frame(parsed, &canonical.frame))?),
     ];
     std::fs::create_dir_all(dir)?;
-    let write = |(figure, picture): &(&str, Pixmap)| {
+    let write = |(figure, picture): &(&str, Vec<u8>)| {
         let path = dir.join(format!("{name}-{figure}.png"));
-        std::fs::write(&path, png(picture)?).map(|()| path)
+        std::fs::write(&path, picture).map(|()| path)
     };
     pictures.iter().map(write).collect()
 }
@@ -76,7 +77,8 @@ pub fn symmetry(parsed: &Parsed, symmetries: &Symmetries, frame: &Frame) -> Pixm
     }
     let sheet = plane.map(|plane| sheet(parsed, frame, 0, &plane));
     let also = sheet.map(Vec::from).unwrap_or_default();
-    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, also: &also };
+    let scene =
+        Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, also: &also, cancel: &Cancel::new() };
     let mut canvas = shaded(&scene, &|id| paints[id.index()], SIDE);
     if let Some(corners) = sheet {
         lay(&mut canvas, corners, SLATE);
@@ -96,7 +98,14 @@ pub fn frame(parsed: &Parsed, frame: &Frame) -> Pixmap {
     let tips = [0, 1, 2].map(|i| tip(parsed, frame, i, AXIS));
     let names = [0, 1, 2].map(|i| tip(parsed, frame, i, 1.6 * AXIS));
     let also: Vec<_> = sheets.iter().flatten().chain(&names).copied().collect();
-    let scene = Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane: None, also: &also };
+    let scene = Scene {
+        mesh: &parsed.mesh,
+        measures: &parsed.measures,
+        frame,
+        plane: None,
+        also: &also,
+        cancel: &Cancel::new(),
+    };
     let mut canvas = shaded(&scene, &|_| Paint::Plain(GREY), SIDE);
     for (corners, colour) in sheets.into_iter().zip(PLANES) {
         lay(&mut canvas, corners, colour);
@@ -107,7 +116,7 @@ pub fn frame(parsed: &Parsed, frame: &Frame) -> Pixmap {
     let mut picture = canvas.resolved();
     for (i, point) in names.iter().enumerate() {
         let [x, y] = canvas.pixel_of(point);
-        text::write(&mut picture, &format!("e{i}"), [x, y - 0.5 * text::height(FONT) as f32], FONT, Align::Middle);
+        text::write(&mut picture, &format!("e{i}"), [x, y - 0.5 * text::height(FONT) as f32], FONT);
     }
     picture
 }
@@ -137,8 +146,11 @@ fn lay(canvas: &mut Canvas, corners: [Point; 4], colour: Rgb) {
     (0..4).for_each(|i| canvas.line([corners[i], corners[(i + 1) % 4]], LINE, colour, false));
 }
 
-/// The projected areas of the planes tried (figure 4), the chosen one marked.
-pub fn areas(canonical: &CanonicalFrame) -> Pixmap {
+/// The projected areas of the planes tried (figure 4), the chosen one marked, as a PNG file.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn areas(canonical: &CanonicalFrame) -> io::Result<Vec<u8>> {
     let sweep = &canonical.sweep;
     area_curve(&sweep.angles, &sweep.areas, sweep.chosen)
 }

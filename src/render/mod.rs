@@ -1,7 +1,7 @@
 //! Pictures of models: shaded, anti-aliased, hidden surfaces hidden.
 //!
 //! Known to `geometry`, `brep` and (in [`figures`]) the outputs of the stages. [`shaded`] draws a mesh by a z-buffer
-//! with more samples than pixels; PNGs are encoded by tiny-skia.
+//! with more samples than pixels; PNGs are encoded by tiny-skia, and curves drawn by kuva.
 
 mod camera;
 mod canvas;
@@ -13,6 +13,7 @@ use tiny_skia::Pixmap;
 
 use crate::brep::measure::Measures;
 use crate::brep::{Mesh, PlacedFaceId};
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Frame, Plane, Point, Vector};
 
 pub use camera::Camera;
@@ -42,6 +43,8 @@ pub struct Scene<'a> {
     pub plane: Option<Plane>,
     /// Points beside the model that the picture must hold.
     pub also: &'a [Point],
+    /// Leaves the rest of the picture out when cancelled.
+    pub cancel: &'a Cancel,
 }
 
 /// Draws the faces, each in its paint, on white, with their outlines; `side` pixels wide and high.
@@ -55,6 +58,9 @@ pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize)
         let id = PlacedFaceId(number as u32);
         let paint = paint(id);
         for t in scene.mesh.triangles_of(id) {
+            if scene.cancel.is_cancelled() {
+                return canvas;
+            }
             let corners = scene.mesh.triangles[t].map(|i| {
                 let point = &scene.mesh.points[i as usize];
                 let across = scene.plane.map_or(0.0, |plane| plane.signed_distance(point));
@@ -68,10 +74,14 @@ pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize)
 }
 
 /// A grey picture of the model for stores and galleries: [`THUMBNAIL`]^2 bytes, row by row from the top, 255 is white.
-pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame) -> Vec<u8> {
-    let scene = Scene { mesh, measures, frame, plane: None, also: &[] };
+///
+/// # Errors
+/// When cancelled.
+pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame, cancel: &Cancel) -> Result<Vec<u8>, Cancelled> {
+    let scene = Scene { mesh, measures, frame, plane: None, also: &[], cancel };
     let picture = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL).resolved();
-    picture.pixels().iter().map(|p| luminance([p.red(), p.green(), p.blue()])).collect()
+    cancel.check()?;
+    Ok(picture.pixels().iter().map(|p| luminance([p.red(), p.green(), p.blue()])).collect())
 }
 
 /// The PNG file of a picture.
@@ -111,7 +121,10 @@ mod tests {
     fn a_thumbnail_shows_three_sides_of_a_box_in_three_greys() {
         let mesh = shapes::cuboid(1.0, 1.0, 1.0);
         let measures = shapes::measures(&mesh);
-        let picture = thumbnail(&mesh, &measures, &own_frame(&measures));
+        let cancel = Cancel::new();
+        let picture = thumbnail(&mesh, &measures, &own_frame(&measures), &cancel).unwrap();
+        cancel.cancel();
+        assert!(thumbnail(&mesh, &measures, &own_frame(&measures), &cancel).is_err());
         assert_eq!(picture.len(), THUMBNAIL * THUMBNAIL);
         assert_eq!(picture[0], 255, "the corner is background");
         assert!(picture[THUMBNAIL * 48 + 48] < 240, "the middle is the box");
@@ -126,7 +139,8 @@ mod tests {
         mesh.faces = vec![first, second];
         let measures = shapes::measures(&mesh);
         let frame = own_frame(&measures);
-        let scene = Scene { mesh: &mesh, measures: &measures, frame: &frame, plane: None, also: &[] };
+        let scene =
+            Scene { mesh: &mesh, measures: &measures, frame: &frame, plane: None, also: &[], cancel: &Cancel::new() };
         let paint = |id: PlacedFaceId| Paint::Plain(if id.0 == 0 { [200, 0, 0] } else { [0, 0, 200] });
         let canvas = shaded(&scene, &paint, 64);
         let [x, y, _] =

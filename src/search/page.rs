@@ -56,7 +56,7 @@ pub fn write_page(path: &Path, store: &Store, asked: &Asked, hits: &[Hit]) -> Re
 fn row<'a>(store: &'a Store, hit: &Hit) -> Result<Row<'a>> {
     Ok(Row {
         id: store.id(hit.row),
-        picture: picture(store.thumbnail(hit.row)),
+        picture: picture(store.thumbnail(hit.row)?),
         distance: format!("{:.4}", hit.distance),
         views: hit.views.map(|view| format!("{view:.4}")),
         symmetry: in_words(&store.summary(hit.row)?),

@@ -1,11 +1,15 @@
 //! The layout of the published file: its header and its table of sections. `FORMAT.md` tells it in words.
 
+use std::fs::File;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
 use crate::alignment::Method;
 
 /// The first bytes of a published file.
 pub const MAGIC: [u8; 8] = *b"SYMALIGN";
-/// Version of the layout.
-pub const VERSION: u32 = 1;
+/// Version of the published file and of the journal.
+pub const VERSION: u32 = 2;
 /// Bytes of the header.
 pub const HEADER: usize = 64;
 /// Bytes of an entry in the table of sections.
@@ -76,6 +80,10 @@ fn method_code(method: Method) -> u32 {
         Method::Cpca => 2,
         Method::Npca => 3,
         Method::File => 4,
+        Method::Mbb => 5,
+        Method::Rectilinearity => 6,
+        Method::Mpa => 7,
+        Method::Prst => 8,
     }
 }
 
@@ -95,6 +103,11 @@ pub struct Section {
 }
 
 impl Section {
+    /// What the section is, in words.
+    pub fn name(&self) -> String {
+        format!("{:?}{}", self.kind, self.method.map(|m| format!(" of {}", m.name())).unwrap_or_default())
+    }
+
     fn to_bytes(self) -> [u8; ENTRY] {
         let mut bytes = [0; ENTRY];
         put(&mut bytes, 0, &self.kind.code().to_le_bytes());
@@ -116,7 +129,16 @@ impl Section {
     }
 }
 
-/// Header and table of sections of a published file.
+/// What a program of version [`VERSION`] says to a store of another one.
+pub fn version_error(version: u32) -> String {
+    format!(
+        "format version {version}, this program reads {VERSION}; use the program that wrote it, another --store, or run \
+         --fresh to start over"
+    )
+}
+
+/// Header and table of sections of a published file: the head. It is there twice, so that one damaged bit does not
+/// cost all: at the start, and the other way round, table then header, at the end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     pub models: u64,
@@ -130,8 +152,20 @@ impl Layout {
         align((HEADER + ENTRY * sections) as u64)
     }
 
+    /// Bytes of the second copy of a head with `sections` table entries.
+    pub fn tail_length(sections: usize) -> u64 {
+        (HEADER + ENTRY * sections) as u64
+    }
+
+    /// The second copy of the head: the table, then the header.
+    pub fn tail(&self) -> Vec<u8> {
+        let bytes = self.head();
+        let table = &bytes[HEADER..HEADER + ENTRY * self.sections.len()];
+        [table, &bytes[..HEADER]].concat()
+    }
+
     /// Header and table as bytes, zero-padded to [`Layout::head_length`].
-    pub fn to_bytes(&self) -> Vec<u8> {
+    pub fn head(&self) -> Vec<u8> {
         let mut bytes = vec![0; Self::head_length(self.sections.len()) as usize];
         for (i, section) in self.sections.iter().enumerate() {
             put(&mut bytes, HEADER + ENTRY * i, &section.to_bytes());
@@ -148,18 +182,38 @@ impl Layout {
         bytes
     }
 
-    /// Reads and checks header and table: magic, version, checksums, and that every section lies inside the file.
+    /// Reads and checks the head: magic, version, checksums, and that every section lies inside the file. Where the
+    /// first copy is damaged, the second one holds.
     pub fn of(file: &[u8]) -> Result<Self, String> {
-        let count = check_header(file)?;
-        let end = HEADER + ENTRY * count as usize;
-        let table = file.get(HEADER..end).ok_or("the table of sections is cut off")?;
-        if crc32fast::hash(table) != u32_at(file, 32) {
+        let [first, second] = Self::copies(file);
+        first.or_else(|why| second.map_err(|_| why))
+    }
+
+    /// Both copies of the head.
+    pub fn copies(file: &[u8]) -> [Result<Self, String>; 2] {
+        let second = file.len().checked_sub(HEADER).and_then(|at| {
+            let header = &file[at..];
+            let length = ENTRY * (u32_at(header, 12).min(SECTIONS_MAX) as usize);
+            Some((header, &file[at.checked_sub(length)?..at]))
+        });
+        let cut_off = || Err("the header is cut off".into());
+        [
+            Self::parse(file, file.get(HEADER..).unwrap_or_default(), file.len()),
+            second.map_or_else(cut_off, |(header, table)| Self::parse(header, table, file.len())),
+        ]
+    }
+
+    /// A head whose table is at the start of `table`.
+    fn parse(header: &[u8], table: &[u8], file_length: usize) -> Result<Self, String> {
+        let count = check_header(header)?;
+        let table = table.get(..ENTRY * count as usize).ok_or("the table of sections is cut off")?;
+        if crc32fast::hash(table) != u32_at(header, 32) {
             return Err("the table of sections is damaged (checksum differs)".into());
         }
         let entry = |bytes| Section::of(bytes).ok_or("a section of a kind this program does not know".to_string());
         let sections = table.chunks_exact(ENTRY).map(entry).collect::<Result<Vec<_>, _>>()?;
-        let layout = Self { models: u64_at(file, 16), file_length: u64_at(file, 24), sections };
-        layout.check_bounds(file.len() as u64)?;
+        let layout = Self { models: u64_at(header, 16), file_length: u64_at(header, 24), sections };
+        layout.check_bounds(file_length as u64)?;
         Ok(layout)
     }
 
@@ -174,9 +228,9 @@ impl Layout {
         }
     }
 
-    /// The section of this kind and method.
-    pub fn find(&self, kind: Kind, method: Option<Method>) -> Option<&Section> {
-        self.sections.iter().find(|s| s.kind == kind && s.method == method)
+    /// The sections of this kind and method, as places in `sections`: small ones are there twice.
+    pub fn find(&self, kind: Kind, method: Option<Method>) -> impl Iterator<Item = usize> {
+        self.sections.iter().enumerate().filter(move |(_, s)| s.kind == kind && s.method == method).map(|(i, _)| i)
     }
 }
 
@@ -193,10 +247,25 @@ fn check_header(file: &[u8]) -> Result<u32, String> {
     }
     let version = u32_at(file, 8);
     if version != VERSION {
-        return Err(format!("format version {version}, this program reads {VERSION}; use the program that wrote it"));
+        return Err(version_error(version));
     }
     let count = u32_at(file, 12);
     if count > SECTIONS_MAX { Err(format!("{count} sections")) } else { Ok(count) }
+}
+
+/// The format version that a published file says it has; `None` where both copies of its header are damaged.
+pub fn version_of(path: &Path) -> std::io::Result<Option<u32>> {
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut header = [0; HEADER];
+    for at in [0, length.saturating_sub(HEADER as u64)] {
+        let read = file.read_exact_at(&mut header, at);
+        if read.is_ok() && header[..8] == MAGIC && crc32fast::hash(&header[..HEADER - 4]) == u32_at(&header, HEADER - 4)
+        {
+            return Ok(Some(u32_at(&header, 8)));
+        }
+    }
+    Ok(None)
 }
 
 /// The next multiple of [`ALIGN`].
@@ -222,30 +291,36 @@ pub fn u64_at(bytes: &[u8], at: usize) -> u64 {
 mod tests {
     use super::*;
 
+    /// Head to 192, two sections, the copy of the head from 384 on.
     fn layout() -> Layout {
         let ids = Section { kind: Kind::Ids, method: None, offset: 192, length: 10, crc: 5 };
         let frames = Section { kind: Kind::Frames, method: Some(Method::Npca), offset: 256, length: 96, crc: u32::MAX };
-        Layout { models: 1, file_length: 352, sections: vec![ids, frames] }
+        Layout { models: 1, file_length: 528, sections: vec![ids, frames] }
     }
 
     fn file() -> Vec<u8> {
-        let mut file = layout().to_bytes();
-        file.resize(352, 0);
+        let mut file = layout().head();
+        file.resize(384, 0);
+        file.extend(layout().tail());
         file
     }
 
     #[test]
     fn a_layout_survives_its_bytes() {
-        assert_eq!(layout().to_bytes().len(), 192);
-        assert_eq!(Layout::of(&file()).unwrap(), layout());
+        assert_eq!((layout().head().len(), file().len()), (192, 528));
+        assert_eq!(Layout::copies(&file()), [Ok(layout()), Ok(layout())]);
     }
 
     #[test]
-    fn every_flipped_bit_of_header_and_table_is_found() {
-        for bit in 0..(HEADER + 2 * ENTRY) * 8 {
-            let mut file = file();
-            file[bit / 8] ^= 1 << (bit % 8);
-            assert!(Layout::of(&file).is_err(), "bit {bit}");
+    fn every_flipped_bit_of_a_head_is_found_and_the_other_copy_holds() {
+        for (copy, bytes) in [(0, 0..HEADER + 2 * ENTRY), (1, 384..528)] {
+            for bit in bytes.start * 8..bytes.end * 8 {
+                let mut file = file();
+                file[bit / 8] ^= 1 << (bit % 8);
+                let copies = Layout::copies(&file);
+                assert!(copies[copy].is_err() && copies[1 - copy].is_ok(), "bit {bit}");
+                assert_eq!(Layout::of(&file), Ok(layout()), "bit {bit}");
+            }
         }
     }
 
@@ -257,6 +332,6 @@ mod tests {
 
     #[test]
     fn method_codes_do_not_change() {
-        assert_eq!(Method::ALL.map(method_code), [0, 1, 2, 3, 4]);
+        assert_eq!(Method::ALL.map(method_code), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
     }
 }

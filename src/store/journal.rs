@@ -1,7 +1,7 @@
 //! The journal of a run: what was done, in the order it was done, safe against a stop at any instant.
 //!
-//! Records are self-delimiting and carry a checksum. A torn tail is cut off; damage in the middle is skipped,
-//! reported, and costs the models in it only. The layout is told in `FORMAT.md`.
+//! Records are self-delimiting and carry a checksum. A torn tail is cut off; damage in the middle is skipped. Both are
+//! reported, and cost the models in them only. The layout is told in `FORMAT.md`.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -9,8 +9,10 @@ use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use super::encoding::{decode, encode};
-use super::format::{u32_at, u64_at};
+use super::format::{VERSION, u32_at, u64_at, version_error};
 use super::record::{Hash, ModelRecord};
+use super::verify::Damage;
+use super::writer::sync_folder;
 use crate::error::{Result, RunError};
 use crate::stages::ModelError;
 
@@ -20,7 +22,7 @@ const MARK: [u8; 4] = *b"\xABrec";
 const HEAD: usize = 20;
 /// No record is longer than this, bytes.
 const LONGEST: u64 = 1 << 30;
-/// The first record says which settings the others were made with.
+/// The first record says which format and settings the others were made with.
 const SETTINGS: u32 = 1;
 /// A model done or lost.
 const MODEL: u32 = 2;
@@ -46,48 +48,95 @@ pub struct Journal {
     /// Bytes of whole records.
     length: u64,
     index: HashMap<Hash, Place>,
-    damage: Vec<String>,
+    damage: Vec<Damage>,
     unsynced: usize,
 }
+
+/// What the first record of a journal holds: format version, settings.
+type Made = (u32, String);
 
 impl Journal {
     /// A new, empty journal for these settings, replacing any that was there.
     pub fn create(path: &Path, settings: &str) -> Result<Self> {
-        let mut journal = Self::open_file(path, true)?;
+        Self::create_with(path, settings, &mut |_| Ok(()))
+    }
+
+    /// [`Journal::create`], with what `fill` appends. At `path` it is there whole or not at all.
+    pub fn create_with(path: &Path, settings: &str, fill: &mut dyn FnMut(&mut Self) -> Result<()>) -> Result<Self> {
+        let draft = path.with_extension("symalign.draft");
+        let mut journal = Self::of(&draft, OpenOptions::new().read(true).write(true).create(true).truncate(true))?;
+        let made = [&VERSION.to_le_bytes()[..], settings.as_bytes()].concat();
         // Twice: without its settings a journal is worth nothing, so one damaged copy must not lose them.
-        journal.write(SETTINGS, settings.as_bytes())?;
-        journal.write(SETTINGS, settings.as_bytes())?;
+        journal.write(SETTINGS, &made)?;
+        journal.write(SETTINGS, &made)?;
+        fill(&mut journal)?;
         journal.commit()?;
+        std::fs::rename(&draft, path).map_err(|e| RunError::file(path, e))?;
+        path.clone_into(&mut journal.path);
+        path.parent().map_or(Ok(()), sync_folder)?;
         Ok(journal)
     }
 
-    /// Opens the journal at `path` and returns it with the settings it was made with. A torn tail is cut off.
+    /// Opens the journal at `path` and returns it with the settings it was made with. A torn tail is cut off, and where
+    /// more is damaged, the journal is written anew without it.
     ///
-    /// `None`: there is none, or it was cut off before its settings were whole.
+    /// `None`: there is none.
     ///
-    /// Errors: it cannot be read, or there are outcomes but both copies of the settings are damaged.
+    /// Errors: it cannot be read, both copies of the settings are damaged, or it has another format version.
     pub fn open(path: &Path) -> Result<Option<(Self, String)>> {
         if !path.exists() {
             return Ok(None);
         }
-        let mut journal = Self::open_file(path, false)?;
-        let settings = journal.scan()?;
-        let torn = journal.file_length()? - journal.length;
-        if torn > 0 {
+        let mut journal = Self::of(path, OpenOptions::new().read(true).write(true))?;
+        let made = journal.scan()?;
+        let settings = journal.settings(made)?;
+        let damage = std::mem::take(&mut journal.damage);
+        if damage.iter().any(|damage| damage.offset < journal.length) {
+            journal = journal.mended(&settings)?;
+        } else if !damage.is_empty() {
             journal.file.set_len(journal.length).map_err(|e| RunError::file(path, e))?;
         }
-        match settings {
-            Some(settings) => Ok(Some((journal, settings))),
-            None if journal.is_empty() => Ok(None),
-            None => Err(journal.error("both copies of its settings are damaged; start over with --fresh".into())),
-        }
+        Ok(Some((Self { damage, ..journal }, settings)))
     }
 
-    fn open_file(path: &Path, fresh: bool) -> Result<Self> {
-        let file = OpenOptions::new().read(true).write(true).create(true).truncate(fresh).open(path);
-        let file = file.map_err(|e| RunError::file(path, e))?;
+    /// A copy of what is whole, in the place of this journal.
+    fn mended(self, settings: &str) -> Result<Self> {
+        let mut places: Vec<_> = self.index.values().collect();
+        places.sort_unstable_by_key(|place| place.offset);
+        Self::create_with(&self.path, settings, &mut |copy| {
+            places.iter().try_for_each(|place| copy.append_payload(&self.payload(place)?))
+        })
+    }
+
+    /// Reads the journal at `path` without changing it: its number of models, and what is damaged. The tail of a
+    /// journal that is being written may be torn.
+    pub fn verify(path: &Path) -> Result<(usize, Vec<Damage>)> {
+        let mut journal = Self::of(path, OpenOptions::new().read(true))?;
+        let made = journal.scan()?;
+        journal.settings(made)?;
+        let mut places: Vec<_> = journal.index.iter().collect();
+        places.sort_unstable_by_key(|(_, place)| place.offset);
+        for (hash, place) in places {
+            if let Err(error) = journal.outcome(hash) {
+                let (offset, length) = (place.offset, (HEAD + place.length) as u64);
+                journal.damage.push(Damage { place: error.to_string(), offset, length });
+            }
+        }
+        Ok((journal.len(), journal.damage))
+    }
+
+    fn of(path: &Path, options: &OpenOptions) -> Result<Self> {
+        let file = options.open(path).map_err(|e| RunError::file(path, e))?;
         let path = path.to_owned();
         Ok(Self { path, file, length: 0, index: HashMap::new(), damage: Vec::new(), unsynced: 0 })
+    }
+
+    fn settings(&self, made: Option<Made>) -> Result<String> {
+        match made {
+            Some((VERSION, settings)) => Ok(settings),
+            Some((version, _)) => Err(self.error(version_error(version))),
+            None => Err(self.error("both copies of its settings are damaged; start over with --fresh".into())),
+        }
     }
 
     fn file_length(&self) -> Result<u64> {
@@ -130,10 +179,13 @@ impl Journal {
             Err(error) => encode(error),
         };
         let body = body.map_err(|why| self.error(why))?;
-        let payload = [&hash[..], &[u8::from(done)], &body].concat();
-        let place = Place { offset: self.length, length: payload.len(), done };
-        self.write(MODEL, &payload)?;
-        self.index.insert(*hash, place);
+        self.append_payload(&[&hash[..], &[u8::from(done)], &body].concat())
+    }
+
+    fn append_payload(&mut self, payload: &[u8]) -> Result<()> {
+        let offset = self.length;
+        self.write(MODEL, payload)?;
+        self.remember(offset, payload);
         self.unsynced += 1;
         Ok(())
     }
@@ -162,8 +214,8 @@ impl Journal {
         self.unsynced
     }
 
-    /// Stretches that were damaged, in words; the models in them have to be computed anew.
-    pub fn damage(&self) -> &[String] {
+    /// Stretches that were damaged; the models in them have to be computed anew.
+    pub fn damage(&self) -> &[Damage] {
         &self.damage
     }
 
@@ -181,19 +233,18 @@ impl Journal {
         RunError::Store { path: self.path.clone(), why }
     }
 
-    /// Reads all records and returns the settings; leaves `length` behind the last whole record.
-    fn scan(&mut self) -> Result<Option<String>> {
+    /// Reads all records and returns what the first one holds; leaves `length` behind the last whole record.
+    fn scan(&mut self) -> Result<Option<Made>> {
         let total = self.file_length()?;
-        let (mut at, mut settings) = (0, None);
+        let (mut at, mut made) = (0, None);
         while at < total {
             match self.record_at(at, total)? {
                 Some((kind, payload)) => {
                     let end = at + (HEAD + payload.len()) as u64;
-                    if at > self.length {
-                        self.damage.push(format!("bytes {} to {at} are damaged and were skipped", self.length));
-                    }
-                    if kind == SETTINGS && settings.is_none() {
-                        settings = String::from_utf8(payload).ok();
+                    self.note_damage("records", at);
+                    if kind == SETTINGS && payload.len() >= 4 && made.is_none() {
+                        let settings = String::from_utf8(payload[4..].to_vec());
+                        made = settings.ok().map(|settings| (u32_at(&payload, 0), settings));
                     } else if kind == MODEL && payload.len() >= KEY {
                         self.remember(at, &payload);
                     }
@@ -202,7 +253,16 @@ impl Journal {
                 None => at = self.next_mark(at + 1, total)?,
             }
         }
-        Ok(settings)
+        self.note_damage("the last record, not written to its end or changed since", total);
+        Ok(made)
+    }
+
+    /// What lies between the last whole record and `at` is damaged.
+    fn note_damage(&mut self, place: &str, at: u64) {
+        if at > self.length {
+            let (place, offset) = (place.to_owned(), self.length);
+            self.damage.push(Damage { place, offset, length: at - offset });
+        }
     }
 
     fn remember(&mut self, offset: u64, payload: &[u8]) {
@@ -271,93 +331,4 @@ fn checksum(record: &[u8]) -> u32 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::stages::Stage;
-
-    fn lost(why: &str) -> Outcome {
-        Err(ModelError::new(Stage::Parse, why))
-    }
-
-    /// Three lost models with the hashes [1; 32], [2; 32], [3; 32].
-    fn journal(dir: &Path) -> PathBuf {
-        let path = dir.join("journal");
-        let mut journal = Journal::create(&path, "a = 1").unwrap();
-        for i in 1..=3 {
-            journal.append(&[i; 32], &lost(&format!("reason {i}"))).unwrap();
-        }
-        journal.commit().unwrap();
-        path
-    }
-
-    fn known(journal: &Journal) -> Vec<u8> {
-        (1..=3).filter(|i| journal.outcome(&[*i; 32]).unwrap() == Some(lost(&format!("reason {i}")))).collect()
-    }
-
-    #[test]
-    fn outcomes_survive_and_the_last_one_counts() {
-        let dir = tempfile::tempdir().unwrap();
-        let (mut journal, settings) = Journal::open(&journal(dir.path())).unwrap().unwrap();
-        assert_eq!((settings.as_str(), known(&journal)), ("a = 1", vec![1, 2, 3]));
-        journal.append(&[1; 32], &lost("again")).unwrap();
-        assert_eq!(journal.outcome(&[1; 32]).unwrap(), Some(lost("again")));
-        assert_eq!((journal.len(), journal.knows(&[1; 32]), journal.knows(&[9; 32])), (3, Some(false), None));
-    }
-
-    #[test]
-    fn a_tail_torn_at_any_byte_is_cut_off() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = journal(dir.path());
-        let whole = std::fs::read(&path).unwrap();
-        let head = 2 * (HEAD + 5);
-        let record = (whole.len() - head) / 3;
-        for length in 0..whole.len() {
-            std::fs::write(&path, &whole[..length]).unwrap();
-            let records = length.saturating_sub(head) / record;
-            let Some((journal, _)) = Journal::open(&path).unwrap() else {
-                assert!(length < HEAD + 5, "settings lost at {length}");
-                continue;
-            };
-            assert_eq!((journal.len(), journal.damage().len()), (records, 0), "at {length}");
-            drop(journal);
-            let kept = if length < head { HEAD + 5 } else { head + records * record };
-            assert_eq!(std::fs::read(&path).unwrap(), whole[..kept]);
-        }
-    }
-
-    #[test]
-    fn a_flipped_bit_costs_one_record_only() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = journal(dir.path());
-        let whole = std::fs::read(&path).unwrap();
-        let head = 2 * (HEAD + 5);
-        let record = (whole.len() - head) / 3;
-        let second = head + record..head + 2 * record;
-        for bit in second.start * 8..second.end * 8 {
-            let mut bytes = whole.clone();
-            bytes[bit / 8] ^= 1 << (bit % 8);
-            std::fs::write(&path, &bytes).unwrap();
-            let (journal, _) = Journal::open(&path).unwrap().unwrap();
-            assert_eq!((known(&journal), journal.damage().len()), (vec![1, 3], 1), "bit {bit}");
-        }
-    }
-
-    #[test]
-    fn one_damaged_copy_of_the_settings_loses_nothing() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = journal(dir.path());
-        let whole = std::fs::read(&path).unwrap();
-        for copy in [0, HEAD + 5] {
-            let mut bytes = whole.clone();
-            bytes[copy + HEAD] ^= 1;
-            std::fs::write(&path, &bytes).unwrap();
-            let (journal, settings) = Journal::open(&path).unwrap().unwrap();
-            assert_eq!((settings.as_str(), known(&journal)), ("a = 1", vec![1, 2, 3]));
-        }
-        let mut bytes = whole.clone();
-        bytes[HEAD] ^= 1;
-        bytes[HEAD + 5 + HEAD] ^= 1;
-        std::fs::write(&path, &bytes).unwrap();
-        assert!(Journal::open(&path).unwrap_err().to_string().contains("settings"));
-    }
-}
+mod tests;

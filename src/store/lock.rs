@@ -26,7 +26,13 @@ impl Lock {
             Err(TryLockError::WouldBlock) => {
                 let mut owner = String::new();
                 file.read_to_string(&mut owner).map_err(io)?;
-                let why = format!("process {} is writing it; wait for it or choose another store", owner.trim());
+                // Between taking the lock and writing its number, a process has none.
+                let owner = if owner.trim().is_empty() {
+                    "another process".into()
+                } else {
+                    format!("process {}", owner.trim())
+                };
+                let why = format!("{owner} is writing it; wait for it or choose another store");
                 return Err(RunError::Store { path: dir.into(), why });
             }
             Err(TryLockError::Error(error)) => return Err(io(error)),

@@ -5,7 +5,7 @@
 //! file tells both layouts. The published bytes are a function of the settings and of the models with their
 //! results: not of workers, order, shards, interruptions or the clock.
 //!
-//! The map is the program's only `unsafe`: a published file is never written again, so what is mapped stays.
+//! The map is `unsafe`: a published file is never written again, so what is mapped stays.
 
 mod difference;
 mod encoding;
@@ -23,7 +23,7 @@ mod writer;
 use std::path::{Path, PathBuf};
 
 pub use difference::differences;
-pub use format::{Kind, Section, VERSION};
+pub use format::{Kind, Section, VERSION, version_error, version_of};
 pub use lock::Lock;
 pub use reader::Store;
 pub use record::{

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use memmap2::Mmap;
 use zerocopy::FromBytes;
@@ -20,17 +21,23 @@ pub struct Store {
     path: PathBuf,
     map: Mmap,
     layout: Layout,
+    /// Of each section, whether its checksum is right: found out when it is first asked for.
+    whole: Vec<OnceLock<bool>>,
     ids: Ids,
+    /// The copies of ids and hashes that are whole.
+    ids_section: Section,
+    hashes_section: Section,
     methods: Vec<Method>,
     failures: Vec<Failure>,
     settings: String,
 }
 
 impl Store {
-    /// Maps the published file of the store folder `dir` and checks its header, table, ids, failures and settings;
-    /// the large sections are checked by [`Store::verify`].
+    /// Maps the published file of the store folder `dir` and checks its head, ids, hashes, failures and settings, of
+    /// which there are two copies each. A section of rows is checked when it is first asked for, so that damage is an
+    /// error and never a wrong number; [`Store::verify`] checks all.
     ///
-    /// Errors: no such file, damage (with the section), or a format version this program does not read.
+    /// Errors: no such file, both copies damaged (with the section), or a format version this program does not read.
     pub fn open(dir: &Path) -> Result<Self> {
         let path = super::published_path(dir);
         let file = File::open(&path).map_err(|e| RunError::file(&path, e))?;
@@ -43,13 +50,17 @@ impl Store {
 
     fn from_map(path: PathBuf, map: Mmap) -> std::result::Result<Self, String> {
         let layout = Layout::of(&map)?;
-        let small = |kind| checked(&map, &layout, kind);
-        let settings = std::str::from_utf8(small(Kind::Settings)?).map_err(|e| format!("settings: {e}"))?.to_owned();
-        let ids = Ids::of(small(Kind::Ids)?, layout.models)?;
-        let failures = encoding::decode(small(Kind::Failures)?).map_err(|e| format!("failures: {e}"))?;
+        let small = |kind| whole_copy(&map, &layout, kind);
+        let bytes = |kind| small(kind).map(|section| bytes_of(&map, &section));
+        let settings = std::str::from_utf8(bytes(Kind::Settings)?).map_err(|e| format!("settings: {e}"))?.to_owned();
+        let ids_section = small(Kind::Ids)?;
+        let hashes_section = small(Kind::Hashes)?;
+        let ids = Ids::of(bytes_of(&map, &ids_section), layout.models)?;
+        let failures = encoding::decode(bytes(Kind::Failures)?).map_err(|e| format!("failures: {e}"))?;
         let frames = layout.sections.iter().filter(|s| s.kind == Kind::Frames);
         let methods: Vec<Method> = frames.filter_map(|s| s.method).collect();
-        let store = Self { path, map, layout, ids, methods, failures, settings };
+        let whole = layout.sections.iter().map(|_| OnceLock::new()).collect();
+        let store = Self { path, map, layout, whole, ids, ids_section, hashes_section, methods, failures, settings };
         store.check_shapes()?;
         Ok(store)
     }
@@ -66,9 +77,9 @@ impl Store {
             (Kind::SummaryOffsets, None, 8 * (self.len() + 1)),
         ];
         for (kind, method, length) in per_method.chain(others) {
-            match self.layout.find(kind, method) {
-                Some(section) if section.length == length as u64 => {}
-                found => return Err(format!("section {kind:?} should have {length} bytes, found {found:?}")),
+            let lengths: Vec<_> = self.layout.find(kind, method).map(|i| self.layout.sections[i].length).collect();
+            if lengths.is_empty() || lengths.iter().any(|found| *found != length as u64) {
+                return Err(format!("section {kind:?} should have {length} bytes, it has {lengths:?}"));
             }
         }
         Ok(())
@@ -86,7 +97,7 @@ impl Store {
 
     /// The id of model `i`.
     pub fn id(&self, i: usize) -> &str {
-        self.ids.get(self.section(Kind::Ids, None).unwrap_or_default(), i)
+        self.ids.get(bytes_of(&self.map, &self.ids_section), i)
     }
 
     /// The row of the model with this id.
@@ -105,7 +116,7 @@ impl Store {
 
     /// BLAKE3 of the bytes of model `i`.
     pub fn hash(&self, i: usize) -> Hash {
-        let rows = self.section(Kind::Hashes, None).unwrap_or_default();
+        let rows = bytes_of(&self.map, &self.hashes_section);
         std::array::from_fn(|k| rows[32 * i + k])
     }
 
@@ -114,39 +125,58 @@ impl Store {
         &self.methods
     }
 
-    /// Magnitude descriptors, [`MAGNITUDES`] numbers a model: row i is model i. `None`: not in this store.
-    pub fn magnitudes(&self, method: Method) -> Option<&[f32]> {
-        <[f32]>::ref_from_bytes(self.section(Kind::Magnitudes, Some(method))?).ok()
+    /// Magnitude descriptors, [`MAGNITUDES`] numbers a model: row i is model i.
+    ///
+    /// Errors: a method that the store does not hold, or damage; so for all that follows.
+    pub fn magnitudes(&self, method: Method) -> Result<&[f32]> {
+        self.numbers(Kind::Magnitudes, method)
     }
 
-    /// Phase descriptors, [`PHASES`] numbers a model: row i is model i. `None`: not in this store.
-    pub fn phases(&self, method: Method) -> Option<&[f32]> {
-        <[f32]>::ref_from_bytes(self.section(Kind::Phases, Some(method))?).ok()
+    /// Phase descriptors, [`PHASES`] numbers a model: row i is model i.
+    pub fn phases(&self, method: Method) -> Result<&[f32]> {
+        self.numbers(Kind::Phases, method)
     }
 
-    /// The frame of model `i` by `method`. `None`: not in this store.
-    pub fn frame(&self, method: Method, i: usize) -> Option<Frame> {
-        let rows = <[[f64; 12]]>::ref_from_bytes(self.section(Kind::Frames, Some(method))?).ok()?;
-        rows.get(i).map(frame_of)
+    /// The frame of model `i` by `method`.
+    pub fn frame(&self, method: Method, i: usize) -> Result<Frame> {
+        let rows: &[[f64; 12]] = self.numbers(Kind::Frames, method)?;
+        rows.get(i).map(frame_of).ok_or_else(|| self.error(format!("no row {i}")))
     }
 
-    /// The evidence for model `i`; an error where the bytes are damaged.
+    /// The section of a method as rows of numbers.
+    fn numbers<T>(&self, kind: Kind, method: Method) -> Result<&[T]>
+    where
+        [T]: FromBytes + zerocopy::Immutable + zerocopy::KnownLayout<PointerMetadata = usize>,
+    {
+        if !self.methods.contains(&method) {
+            let known: Vec<_> = self.methods.iter().map(|method| method.name()).collect();
+            return Err(RunError::Usage(format!(
+                "the store has no frame `{}`, only {}",
+                method.name(),
+                known.join(", ")
+            )));
+        }
+        let bytes = self.section(kind, Some(method))?;
+        <[T]>::ref_from_bytes(bytes).map_err(|_| self.error(format!("section {kind:?} holds no whole rows")))
+    }
+
+    /// The evidence for model `i`.
     pub fn summary(&self, i: usize) -> Result<Summary> {
-        let decoded = self.summary_bytes(i).ok_or_else(|| "its bytes are out of range".to_owned());
-        let summary = decoded.and_then(encoding::decode);
+        let bytes = self.summary_bytes(i)?.ok_or_else(|| "its bytes are out of range".to_owned());
+        let summary = bytes.and_then(encoding::decode);
         summary.map_err(|why| self.error(format!("summary of {}: {why}", self.id(i))))
     }
 
-    fn summary_bytes(&self, i: usize) -> Option<&[u8]> {
-        let offsets = self.section(Kind::SummaryOffsets, None)?;
-        let (start, end) = (u64_at(offsets, 8 * i), u64_at(offsets, 8 * i + 8));
-        self.section(Kind::Summaries, None)?.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?)
+    fn summary_bytes(&self, i: usize) -> Result<Option<&[u8]>> {
+        let (offsets, all) = (self.section(Kind::SummaryOffsets, None)?, self.section(Kind::Summaries, None)?);
+        let at = |row| usize::try_from(u64_at(offsets, 8 * row)).ok();
+        Ok(at(i).zip(at(i + 1)).and_then(|(start, end)| all.get(start..end)))
     }
 
     /// The picture of model `i`: [`THUMBNAIL`] x [`THUMBNAIL`] grey levels, row by row.
-    pub fn thumbnail(&self, i: usize) -> &[u8] {
+    pub fn thumbnail(&self, i: usize) -> Result<&[u8]> {
         let size = THUMBNAIL * THUMBNAIL;
-        &self.section(Kind::Thumbnails, None).unwrap_or_default()[size * i..size * (i + 1)]
+        Ok(&self.section(Kind::Thumbnails, None)?[size * i..size * (i + 1)])
     }
 
     /// The models that were lost, sorted by id.
@@ -159,17 +189,16 @@ impl Store {
         &self.settings
     }
 
-    /// All that is kept of model `i`; an error where the bytes are damaged.
+    /// All that is kept of model `i`.
     pub fn record(&self, i: usize) -> Result<ModelRecord> {
-        let poses = self.methods.iter().map(|&method| self.pose(method, i)).collect::<Option<Vec<_>>>();
-        let poses = poses.ok_or_else(|| self.error(format!("no row {i}")))?;
-        Ok(ModelRecord { summary: self.summary(i)?, thumbnail: self.thumbnail(i).to_vec(), poses })
+        let poses = self.methods.iter().map(|&method| self.pose(method, i)).collect::<Result<_>>()?;
+        Ok(ModelRecord { summary: self.summary(i)?, thumbnail: self.thumbnail(i)?.to_vec(), poses })
     }
 
-    fn pose(&self, method: Method, i: usize) -> Option<Pose> {
-        let magnitude = self.magnitudes(method)?.chunks_exact(MAGNITUDES).nth(i)?.to_vec();
-        let phase = self.phases(method)?.chunks_exact(PHASES).nth(i)?.to_vec();
-        Some(Pose { method, frame: super::record::frame_numbers(&self.frame(method, i)?), magnitude, phase })
+    fn pose(&self, method: Method, i: usize) -> Result<Pose> {
+        let magnitude = self.magnitudes(method)?[i * MAGNITUDES..(i + 1) * MAGNITUDES].to_vec();
+        let phase = self.phases(method)?[i * PHASES..(i + 1) * PHASES].to_vec();
+        Ok(Pose { method, frame: super::record::frame_numbers(&self.frame(method, i)?), magnitude, phase })
     }
 
     /// The published file.
@@ -195,9 +224,16 @@ impl Store {
         RunError::Store { path: self.path.clone(), why }
     }
 
-    /// The bytes of a section.
-    fn section(&self, kind: Kind, method: Option<Method>) -> Option<&[u8]> {
-        self.layout.find(kind, method).map(|section| bytes_of(&self.map, section))
+    /// Whether the checksum of section `i` is right.
+    pub(super) fn is_whole(&self, i: usize) -> bool {
+        *self.whole[i].get_or_init(|| crc_is_right(&self.map, &self.layout.sections[i]))
+    }
+
+    /// The bytes of a section, or of its copy where it is damaged.
+    fn section(&self, kind: Kind, method: Option<Method>) -> Result<&[u8]> {
+        let whole = self.layout.find(kind, method).find(|i| self.is_whole(*i));
+        let bytes = whole.map(|i| bytes_of(&self.map, &self.layout.sections[i]));
+        bytes.ok_or_else(|| self.error(damaged(&self.layout, kind, method)))
     }
 }
 
@@ -206,9 +242,24 @@ pub(super) fn bytes_of<'a>(file: &'a [u8], section: &Section) -> &'a [u8] {
     &file[section.offset as usize..(section.offset + section.length) as usize]
 }
 
-/// The bytes of a section that belongs to no method, checked against its checksum.
-fn checked<'a>(file: &'a [u8], layout: &Layout, kind: Kind) -> std::result::Result<&'a [u8], String> {
-    let section = layout.find(kind, None).ok_or_else(|| format!("section {kind:?} is missing"))?;
-    let bytes = bytes_of(file, section);
-    if crc32fast::hash(bytes) == section.crc { Ok(bytes) } else { Err(format!("section {kind:?} is damaged")) }
+fn crc_is_right(file: &[u8], section: &Section) -> bool {
+    crc32fast::hash(bytes_of(file, section)) == section.crc
+}
+
+/// The first copy that is whole of a section that belongs to no method.
+fn whole_copy(file: &[u8], layout: &Layout, kind: Kind) -> std::result::Result<Section, String> {
+    let mut copies = layout.find(kind, None).map(|i| layout.sections[i]);
+    copies.find(|section| crc_is_right(file, section)).ok_or_else(|| damaged(layout, kind, None))
+}
+
+/// What is said of a section without a whole copy.
+fn damaged(layout: &Layout, kind: Kind, method: Option<Method>) -> String {
+    match layout.find(kind, method).next().map(|i| &layout.sections[i]) {
+        Some(section) => format!(
+            "section {} at byte {} is damaged; the same `run` again publishes it anew and computes nothing twice",
+            section.name(),
+            section.offset
+        ),
+        None => format!("section {kind:?} is missing"),
+    }
 }

@@ -1,9 +1,9 @@
 //! The full check of a published store.
 
-use super::format::{ENTRY, HEADER};
-use super::reader::{Store, bytes_of};
+use super::format::{ENTRY, HEADER, Layout};
+use super::reader::Store;
 
-/// A damaged stretch of a published file.
+/// A damaged stretch of a published file or a journal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
     /// What lies there.
@@ -14,27 +14,42 @@ pub struct Damage {
     pub length: u64,
 }
 
+impl std::fmt::Display for Damage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} at byte {}, {} bytes", self.place, self.offset, self.length)
+    }
+}
+
 impl Store {
-    /// Checks every byte of the published file: the checksum of every section, zeros between them, and that every
-    /// summary decodes. Returns what is damaged; empty when all is well.
+    /// Checks every byte of the published file: both copies of the head, the checksum of every section, zeros between
+    /// them, and that every summary decodes. Returns what is damaged; empty when all is well.
     ///
     /// Cost: one pass over the file.
     pub fn verify(&self) -> Vec<Damage> {
-        let mut damages = self.damaged_sections();
+        let mut damages = self.damaged_heads();
+        damages.extend(self.damaged_sections());
         damages.extend(self.damaged_gaps());
         damages.extend(self.undecodable_summaries(damages.is_empty()));
         damages
     }
 
+    fn damaged_heads(&self) -> Vec<Damage> {
+        let length = Layout::tail_length(self.sections().len());
+        let places = [("header and table at the start", 0), ("header and table at the end", self.tail_start())];
+        let copies = Layout::copies(self.bytes()).into_iter().zip(places);
+        let bad = copies.filter(|(copy, _)| copy.as_ref() != Ok(self.layout()));
+        bad.map(|(_, (place, offset))| Damage { place: place.into(), offset, length }).collect()
+    }
+
+    /// Where the second copy of the head starts.
+    fn tail_start(&self) -> u64 {
+        self.layout().file_length - Layout::tail_length(self.sections().len())
+    }
+
     fn damaged_sections(&self) -> Vec<Damage> {
-        let sections = self.sections().iter();
-        let bad = sections.filter(|s| crc32fast::hash(bytes_of(self.bytes(), s)) != s.crc);
-        bad.map(|s| Damage {
-            place: format!("{:?}{}", s.kind, s.method.map(|m| format!(" of {}", m.name())).unwrap_or_default()),
-            offset: s.offset,
-            length: s.length,
-        })
-        .collect()
+        let sections = self.sections().iter().enumerate();
+        let bad = sections.filter(|(i, _)| !self.is_whole(*i));
+        bad.map(|(_, s)| Damage { place: s.name(), offset: s.offset, length: s.length }).collect()
     }
 
     /// Bytes that belong to no section must be zero.
@@ -42,7 +57,7 @@ impl Store {
         let table_end = HEADER + ENTRY * self.sections().len();
         let mut taken: Vec<_> = self.sections().iter().map(|s| (s.offset, s.offset + s.length)).collect();
         taken.push((0, table_end as u64));
-        taken.push((self.layout().file_length, self.layout().file_length));
+        taken.push((self.tail_start(), self.layout().file_length));
         taken.sort_unstable();
         let gaps = taken.windows(2).map(|pair| (pair[0].1, pair[1].0)).filter(|(start, end)| start < end);
         let dirty = gaps.filter(|&(start, end)| self.bytes()[start as usize..end as usize].iter().any(|b| *b != 0));

@@ -39,8 +39,12 @@ pub fn publish(
     let draft = dir.join("models.symalign.draft");
     let io = |e| RunError::file(&draft, e);
     let file = OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&draft).map_err(io)?;
-    Draft::write(&file, &draft, &contents, fetch)?;
-    file.sync_all().map_err(io)?;
+    let written = Draft::write(&file, &draft, &contents, fetch).and_then(|()| file.sync_all().map_err(io));
+    if written.is_err() {
+        // Best effort: half a draft on a full disk is in the way, and the next one replaces it anyway.
+        let _ = fs::remove_file(&draft);
+    }
+    written?;
     fs::rename(&draft, &target).map_err(|e| RunError::file(&target, e))?;
     sync_folder(dir)
 }
@@ -65,11 +69,14 @@ impl<'a> Draft<'a> {
         contents: &Contents,
         fetch: &mut dyn FnMut(&str, &Hash) -> Result<ModelRecord>,
     ) -> Result<()> {
-        let count = 7 + 3 * contents.methods.len();
+        let count = 12 + 3 * contents.methods.len();
         let mut draft = Draft { file, path, sections: Vec::with_capacity(count), end: Layout::head_length(count) };
         draft.small_sections(contents)?;
         draft.reserve_rows(contents);
-        draft.rows(contents, fetch)?;
+        let offsets = draft.rows(contents, fetch)?;
+        // What names all the rest is there twice, so that one damaged bit costs no more than a section of rows.
+        draft.small_sections(contents)?;
+        draft.append(Kind::SummaryOffsets, &offsets)?;
         debug_assert_eq!(draft.sections.len(), count);
         draft.finish(contents.models.len() as u64)
     }
@@ -114,8 +121,12 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Writes row by row into the reserved sections, and the summaries after them.
-    fn rows(&mut self, contents: &Contents, fetch: &mut dyn FnMut(&str, &Hash) -> Result<ModelRecord>) -> Result<()> {
+    /// Writes row by row into the reserved sections, and the summaries after them; returns where those start.
+    fn rows(
+        &mut self,
+        contents: &Contents,
+        fetch: &mut dyn FnMut(&str, &Hash) -> Result<ModelRecord>,
+    ) -> Result<Vec<u8>> {
         let index = self.reserve(Kind::SummaryOffsets, None, 8 * (contents.models.len() as u64 + 1));
         let start = align(self.end);
         let mut offsets = vec![0u64];
@@ -134,7 +145,7 @@ impl<'a> Draft<'a> {
         let bytes: Vec<u8> = offsets.iter().flat_map(|o| o.to_le_bytes()).collect();
         self.put(&bytes, index)?;
         self.reserve(Kind::Summaries, None, offsets[contents.models.len()]);
-        Ok(())
+        Ok(bytes)
     }
 
     fn row(&self, i: u64, record: &ModelRecord) -> Result<()> {
@@ -156,16 +167,18 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Sums up the sections as they now are on disk and writes header and table.
+    /// Sums up the sections as they now are on disk and writes both copies of the head.
     fn finish(mut self, models: u64) -> Result<()> {
-        let file_length = align(self.end);
+        let tail = align(self.end);
+        let file_length = tail + Layout::tail_length(self.sections.len());
         let io = |e| RunError::file(self.path, e);
         self.file.set_len(file_length).map_err(io)?;
         for section in &mut self.sections {
             section.crc = checksum(self.file, section).map_err(io)?;
         }
         let layout = Layout { models, file_length, sections: std::mem::take(&mut self.sections) };
-        self.put(&layout.to_bytes(), 0)
+        self.put(&layout.tail(), tail)?;
+        self.put(&layout.head(), 0)
     }
 }
 

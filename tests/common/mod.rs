@@ -61,3 +61,22 @@ pub fn archive(dir: &Path) -> PathBuf {
 pub fn published(store: &Path) -> Vec<u8> {
     std::fs::read(store.join("models.symalign")).unwrap()
 }
+
+/// A STEP file that holds the contents of `text` so many times: the numbers of the entities are shifted.
+pub fn copies(text: &str, count: usize) -> String {
+    let (head, rest) = text.split_once("DATA;").unwrap();
+    let (data, tail) = rest.split_once("ENDSEC;").unwrap();
+    let mut pieces = data.split('#');
+    let first = pieces.next().unwrap();
+    let numbered = |piece: &'_ str| {
+        let digits = piece.bytes().take_while(u8::is_ascii_digit).count();
+        (piece[..digits].parse::<usize>().unwrap(), piece[digits..].to_owned())
+    };
+    let pieces: Vec<_> = pieces.map(numbered).collect();
+    let stride = pieces.iter().map(|(number, _)| number).max().unwrap() + 1;
+    let mut all = format!("{head}DATA;{first}");
+    for copy in 0..count {
+        pieces.iter().for_each(|(number, rest)| all += &format!("#{}{rest}", number + copy * stride));
+    }
+    all + "ENDSEC;" + tail
+}

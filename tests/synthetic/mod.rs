@@ -1,4 +1,5 @@
 //! A published store of made-up models: classes are clouds of descriptors, pictures are discs and squares.
+#![allow(dead_code)] // each test program uses its part
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,21 +27,31 @@ pub const METHODS: [Method; 4] = [Method::Symmetry, Method::Cpca, Method::Pca, M
 
 /// Writes the store with 97 models and two failures into `dir`, and the labels of 98 into `labels.csv` beside it.
 pub fn store(dir: &Path) {
+    of(dir, &CLASSES.map(|(class, n)| (class.to_owned(), n)));
+}
+
+/// The same with models of `classes`.
+pub fn of(dir: &Path, classes: &[(String, usize)]) {
     std::fs::create_dir_all(dir).unwrap();
-    let models: Vec<_> =
-        CLASSES.iter().flat_map(|&(class, n)| (0..n).map(move |i| format!("{class}/{i:02}.step"))).collect();
-    let failure =
-        |id: &str, why: &str| Failure { id: id.into(), hash: None, error: ModelError::at(Stage::Parse, 42, why) };
+    let mut numbers = BTreeMap::new();
+    for (kind, (class, n)) in classes.iter().enumerate() {
+        numbers.extend((0..*n).map(|i| (format!("{class}/{i:02}.step"), (kind, i))));
+    }
     let contents = Contents {
         settings: "profile = \"default\"\n",
         methods: &METHODS,
-        models: models.iter().map(|id| (id.clone(), [0; 32])).collect(),
+        models: numbers.keys().map(|id| (id.clone(), [0; 32])).collect(),
         failures: vec![failure("boat/broken.step", "no <shell>"), failure("notes.step", "not STEP")],
     };
-    publish(dir, contents, &mut |id, _| Ok(record(id))).unwrap();
+    publish(dir, contents, &mut |id, _| Ok(record(numbers[id]))).unwrap();
     let label = |id: &str| format!("{id},{},made up\n", id.split('/').next().unwrap());
-    let labels: String = models.iter().map(String::as_str).chain(["boat/broken.step"]).map(label).collect();
+    let labels: String = numbers.keys().map(String::as_str).chain(["boat/broken.step"]).map(label).collect();
     std::fs::write(dir.join("labels.csv"), format!("path,category,source\n{labels}")).unwrap();
+}
+
+/// A model that was lost.
+pub fn failure(id: &str, why: &str) -> Failure {
+    Failure { id: id.into(), hash: None, error: ModelError::at(Stage::Parse, 42, why) }
 }
 
 /// A number from 0 to 1 that looks random.
@@ -50,10 +61,8 @@ fn noise(seed: usize) -> f32 {
     (mixed >> 40) as f32 / (1u64 << 24) as f32
 }
 
-fn record(id: &str) -> ModelRecord {
-    let (class, file) = id.split_once('/').unwrap();
-    let kind = CLASSES.iter().position(|(name, _)| *name == class).unwrap();
-    let number: usize = file[..2].parse().unwrap();
+/// The record of model `number` of class `kind`.
+pub fn record((kind, number): (usize, usize)) -> ModelRecord {
     let row = |length: usize, method: usize, spread: f32| {
         let value = |k: usize| {
             noise(1000 * kind + k)
@@ -71,7 +80,7 @@ fn record(id: &str) -> ModelRecord {
     };
     ModelRecord {
         summary: summary(kind, number),
-        thumbnail: thumbnail(kind, number),
+        thumbnail: thumbnail(kind % 9, number),
         poses: METHODS.iter().enumerate().map(pose).collect(),
     }
 }

@@ -4,11 +4,11 @@
 //! In: a [`Model`]. Out: a [`Mesh`] of all occurrences with exact areas, what was left out, and what was guessed.
 //!
 //! Method: every edge becomes one polyline. A face's loops, less its seams, are projected onto the surface, unwrapped
-//! over the periods and laid out as closed paths ([`boundary`]). Paths that go round the surface are wrapped into a
-//! strip that is cut open ([`strip`]). Polygons are cut into ears, straight-lined walls into strips; everything else
+//! over the periods and laid out as closed paths (`boundary`). Paths that go round the surface are wrapped into a
+//! strip that is cut open (`strip`). Polygons are cut into ears, straight-lined walls into strips; everything else
 //! is a constrained Delaunay triangulation with interior points by curvature, and the inside is found by the parity
-//! of crossings ([`domain`]). Edges that are too coarse for a narrow face are cut again ([`refine`]). Area, centroid
-//! and flux are integrals over the true trimmed surface ([`integrate`]).
+//! of crossings (`domain`). Edges that are too coarse for a narrow face are cut again (`refine`). Area, centroid
+//! and flux are integrals over the true trimmed surface (`integrate`).
 //!
 //! Cost: linear in edges and faces; a Delaunay face of n points takes O(n log n).
 //!
@@ -40,15 +40,17 @@ use rayon::prelude::*;
 
 use super::{EdgeId, Face, Mesh, Model, Skipped};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Aabb, Point};
+use crate::geometry::Point;
 use edges::{EdgeLines, Fineness};
 use face::{Context, FaceMesh};
+use place::Place;
 
 /// How finely models are tessellated.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
-    /// Largest distance between a chord and its edge or surface, as a share of the diagonal of the model's box.
+    /// Largest distance between a chord and its edge or surface, as a share of the model's diameter,
+    /// measured alike in every pose.
     /// 0.001 is half a pixel of a silhouette of 512 pixels.
     pub deflection: f64,
     /// Largest angle between neighbouring chords, radians. 0.35 (20 degrees) keeps small holes round.
@@ -81,14 +83,14 @@ pub fn tessellate(
     cancel: &Cancel,
 ) -> Result<(Mesh, Vec<Skipped>, Vec<String>), Cancelled> {
     let spans = spans(model, cancel)?;
-    let boxes = place::boxes(model, &spans);
-    let size = place::model_box(model, &boxes).diagonal();
+    let places = place::places(model, &spans);
+    let size = place::model_size(model, &places);
     if size.is_nan() || size <= 0.0 || size.is_infinite() {
         let why = "the model has no extent".to_owned();
         return Ok((Mesh::default(), all_skipped(model, &why), vec![why]));
     }
     let part_size = size / place::largest_scale(model);
-    let reference = references(model, &boxes);
+    let reference = references(model, &places);
     let most = options.max_triangles;
     let mut coarser = 1.0;
     loop {
@@ -130,12 +132,14 @@ fn is_point(lines: &EdgeLines, edge: EdgeId, tolerance: f64) -> bool {
     points.iter().chain(middles).all(|p| (p - points[0]).norm() <= tolerance)
 }
 
-/// The reference point of each face: the centre of its body's box.
-fn references(model: &Model, boxes: &[Aabb]) -> Vec<Point> {
+/// The reference point of each face: the centre of its body.
+fn references(model: &Model, places: &[Option<Place>]) -> Vec<Point> {
     let mut points = vec![Point::origin(); model.faces.len()];
-    for (body, aabb) in model.bodies.iter().zip(boxes) {
+    for (body, place) in model.bodies.iter().zip(places) {
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
-        faces.filter(|_| !aabb.is_empty()).for_each(|f| points[f.index()] = aabb.centre());
+        if let Some(place) = place {
+            faces.for_each(|f| points[f.index()] = place.centre);
+        }
     }
     points
 }
@@ -147,13 +151,13 @@ fn face_meshes(context: &Context, most: usize) -> Result<Vec<Result<FaceMesh, St
         // Asked afterwards, too: what a cancelled face says means nothing.
         context.cancel.check().map(|()| mesh)
     };
-    let faces = &context.model.faces;
+    let (faces, account) = (&context.model.faces, context.cancel.account());
     let (mut meshes, mut triangles) = (Vec::with_capacity(faces.len()), 0);
     for (batch, references) in faces.chunks(BATCH).zip(context.reference.chunks(BATCH)) {
         let made: Vec<_> = if faces.len() < PARALLEL_FACES {
             batch.iter().zip(references).map(one).collect::<Result<_, _>>()?
         } else {
-            batch.par_iter().zip(references).map(one).collect::<Result<_, _>>()?
+            batch.par_iter().zip(references).map(|face| account.within(|| one(face))).collect::<Result<_, _>>()?
         };
         triangles += made.iter().flatten().map(|mesh| mesh.triangles.len()).sum::<usize>();
         meshes.extend(made);

@@ -3,10 +3,10 @@
 use super::face::FaceMesh;
 use crate::brep::{EdgeId, FaceGeometry, Mesh, MeshFace, Model, Occurrence, Skipped, Surface};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Aabb, Point, Transform, Vector};
+use crate::geometry::{Point, Transform, Vector};
 
 /// Samples of each edge for the size of the model.
-const BOX_SAMPLES: usize = 4;
+const EDGE_SAMPLES: usize = 4;
 
 /// A mesh in the making.
 #[derive(Default)]
@@ -93,74 +93,100 @@ pub(super) fn place(
     Ok(placed)
 }
 
-/// A rough box of each body in its own coordinates: points of its edges and the extent of surfaces without bounds.
-pub(super) fn boxes(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Aabb> {
-    let body_box = |body: &crate::brep::Body| {
-        let mut aabb = Aabb::default();
+/// Where a body lies in its own coordinates, roughly.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub centre: Point,
+    /// Of a ball about the centre that holds the body.
+    pub radius: f64,
+}
+
+impl Place {
+    /// The ball about the mean of weighted points: the same for a body whatever its coordinates, without a choice that
+    /// rounding decides, so that a model is meshed alike in every pose. `None` without points.
+    fn of(points: &[(Point, f64)]) -> Option<Self> {
+        let (first, _) = points.first()?;
+        let total: f64 = points.iter().map(|(_, weight)| weight).sum();
+        let share = |weight: f64| if total > 0.0 { weight / total } else { 1.0 / points.len() as f64 };
+        let centre = first + points.iter().map(|(p, weight)| (p - first) * share(*weight)).sum::<Vector>();
+        let radius = points.iter().map(|(p, _)| (p - centre).norm()).fold(0.0, f64::max);
+        Some(Self { centre, radius })
+    }
+}
+
+/// Where each body lies, by points of its edges and the extent of surfaces without bounds.
+pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Place>> {
+    let place = |body: &crate::brep::Body| {
+        let mut points = Vec::new();
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
         for face in faces.map(|f| &model.faces[f.index()]) {
             match &face.geometry {
-                FaceGeometry::Faceted(facets) => facets.points.iter().for_each(|p| aabb.add(p)),
+                FaceGeometry::Faceted(facets) => add_chain(&mut points, &facets.points),
                 FaceGeometry::Trimmed { surface, .. } if face.loops.iter().all(|l| l.uses.is_empty()) => {
-                    add_surface(&mut aabb, surface);
+                    add_surface(&mut points, surface);
                 }
                 FaceGeometry::Trimmed { .. } => {
                     let edges = face.loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);
-                    edges.for_each(|e| add_edge(&mut aabb, model, e, spans[e.index()]));
+                    edges.for_each(|e| add_edge(&mut points, model, e, spans[e.index()]));
                 }
             }
         }
-        aabb
+        points.retain(|(p, weight): &(Point, f64)| p.iter().chain([weight]).all(|c| c.is_finite()));
+        Place::of(&points)
     };
-    model.bodies.iter().map(body_box).collect()
+    model.bodies.iter().map(place).collect()
 }
 
-fn add_edge(aabb: &mut Aabb, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
-    model.ends(id).iter().for_each(|p| aabb.add(p));
-    let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) else { return };
-    if matches!(curve, crate::brep::Curve::Line { .. }) {
-        return;
-    }
-    let period = curve.period();
-    for i in 1..BOX_SAMPLES {
-        let t = from + (to - from) * i as f64 / BOX_SAMPLES as f64;
-        aabb.add(&curve.point(curve.wrap(t, period)));
+/// Adds points, each with the distance from the one before it as its weight: many on a short edge count little.
+fn add_chain(points: &mut Vec<(Point, f64)>, chain: &[Point]) {
+    let mut before = chain.first();
+    for p in chain {
+        points.push((*p, before.map_or(0.0, |q| (p - q).norm())));
+        before = Some(p);
     }
 }
 
-/// Corners of a box around a whole sphere or torus; the corners of the domain for others that have one.
-fn add_surface(aabb: &mut Aabb, surface: &Surface) {
-    let (centre, reach) = match surface {
-        Surface::Sphere { placement, radius } => (placement.origin, *radius),
-        Surface::Torus { placement, major, minor } => (placement.origin, major + minor),
+fn add_edge(points: &mut Vec<(Point, f64)>, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
+    let [start, end] = model.ends(id);
+    let mut chain = vec![start];
+    if let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) {
+        let period = curve.period();
+        let at = |i: usize| from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
+        chain.extend((1..EDGE_SAMPLES).map(|i| curve.point(curve.wrap(at(i), period))));
+    }
+    chain.push(end);
+    add_chain(points, &chain);
+}
+
+/// The poles of a whole sphere or torus; a grid over the domain of others that have one.
+fn add_surface(points: &mut Vec<(Point, f64)>, surface: &Surface) {
+    let (placement, reach) = match surface {
+        Surface::Sphere { placement, radius } => (placement, *radius),
+        Surface::Torus { placement, major, minor } => (placement, major + minor),
         other => {
             let [u0, u1, v0, v1] = other.domain();
             if [u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
-                let share = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / BOX_SAMPLES as f64;
-                let nodes = (0..=BOX_SAMPLES).flat_map(|i| (0..=BOX_SAMPLES).map(move |j| (i, j)));
-                nodes.for_each(|(i, j)| aabb.add(&other.point(share(u0, u1, i), share(v0, v1, j))));
+                let share = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / EDGE_SAMPLES as f64;
+                let nodes = (0..=EDGE_SAMPLES).flat_map(|i| (0..=EDGE_SAMPLES).map(move |j| (i, j)));
+                let grid: Vec<_> = nodes.map(|(i, j)| other.point(share(u0, u1, i), share(v0, v1, j))).collect();
+                add_chain(points, &grid);
             }
             return;
         }
     };
-    aabb.add(&(centre + Vector::repeat(reach)));
-    aabb.add(&(centre - Vector::repeat(reach)));
+    let poles = [placement.x, placement.y, placement.z].into_iter().flat_map(|axis| [axis * reach, -axis * reach]);
+    points.extend(poles.map(|pole| (placement.origin + pole, reach)));
 }
 
-/// The box of all occurrences, from the corners of the bodies' boxes.
-pub(super) fn model_box(model: &Model, boxes: &[Aabb]) -> Aabb {
-    let mut all = Aabb::default();
-    for Occurrence { body, placement, .. } in &model.occurrences {
-        let aabb = &boxes[body.index()];
-        if aabb.is_empty() {
-            continue;
-        }
-        for corner in 0..8 {
-            let side = |axis: usize| if corner >> axis & 1 == 0 { aabb.min[axis] } else { aabb.max[axis] };
-            all.add(&placement.point(&Point::new(side(0), side(1), side(2))));
-        }
-    }
-    all
+/// The diameter of a ball that holds all occurrences, seen as balls, mm; 0 without any.
+pub(super) fn model_size(model: &Model, places: &[Option<Place>]) -> f64 {
+    let placed = |o: &Occurrence| {
+        let own = places[o.body.index()]?;
+        Some((o.placement.point(&own.centre), own.radius * o.placement.scale()))
+    };
+    let balls: Vec<(Point, f64)> = model.occurrences.iter().filter_map(placed).collect();
+    let Some(all) = Place::of(&balls) else { return 0.0 };
+    2.0 * balls.iter().map(|(centre, radius)| (centre - all.centre).norm() + radius).fold(0.0, f64::max)
 }
 
 /// The largest factor by which an occurrence enlarges its body.

@@ -10,7 +10,7 @@ pub const WHOLE_RUNS: usize = 5_000;
 /// Places of a ranking that a run holds beyond that: the custom at TREC.
 const DEPTH: usize = 1_000;
 
-/// How many places of each ranking a run over `gallery` holds: in large ones [`DEPTH`], or the second tier of the
+/// How many places of each ranking a run over `gallery` holds: in large ones `DEPTH`, or the second tier of the
 /// largest class.
 pub fn run_depth(gallery: &Gallery) -> usize {
     let tier = gallery.queried().map(|class| 2 * class.relevant()).max().unwrap_or(0);

@@ -143,7 +143,7 @@ fn shown(evaluation: &Evaluation, store: &Store, model: usize) -> Result<Model> 
     Ok(Model {
         id: gallery.ids[model].clone(),
         class: gallery.class(model).name.clone(),
-        picture: data_uri(&grey_png(store.thumbnail(row), THUMBNAIL)),
+        picture: data_uri(&grey_png(store.thumbnail(row)?, THUMBNAIL)),
         symmetry: in_words(&summary),
         plane: plane(&summary),
     })
@@ -156,8 +156,16 @@ fn plane(summary: &Summary) -> String {
     };
     let [x, y, z] = plane.normal;
     let mut text = format!("normal ({x:.3}, {y:.3}, {z:.3}) at {:.2} mm", plane.offset_mm);
-    let counts = [(plane.pair_count, "pairs of faces"), (plane.self_count, "faces onto themselves")];
-    counts.iter().filter(|(n, _)| *n > 0).for_each(|(n, what)| text += &format!(", {n} {what}"));
+    text += &match plane.pair_count {
+        0 => String::new(),
+        1 => ", a pair of faces".into(),
+        n => format!(", {n} pairs of faces"),
+    };
+    text += &match plane.self_count {
+        0 => String::new(),
+        1 => ", a face onto itself".into(),
+        n => format!(", {n} faces onto themselves"),
+    };
     if !summary.axes.is_empty() {
         text += ", one of all through its axis";
     }

@@ -28,7 +28,10 @@ for (const button of all("[data-show]")) {
     methods_changed();
   };
 }
-if (matchMedia("(max-width: 40rem)").matches) document.querySelector(".legend").open = false;
+const legend = document.querySelector(".legend");
+if (matchMedia("(max-width: 40rem)").matches) legend.open = false;
+// what is scrolled to must not lie below it
+new ResizeObserver(() => { document.documentElement.style.scrollPaddingTop = `${legend.offsetHeight + 8}px`; }).observe(legend);
 
 // sorting: numbers first down, then up
 for (const heading of all(".sortable thead th")) {

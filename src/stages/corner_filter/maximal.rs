@@ -3,19 +3,26 @@
 use rustc_hash::FxHashMap;
 
 use crate::brep::{EdgeId, Face, FaceGeometry, FaceId, Model, Placement, Surface};
+use crate::cancel::{Cancel, Cancelled};
 
 /// Groups of faces that form one maximal face each, in the order of their first face. Without a tolerance (mm)
 /// every face is its own group.
-pub(super) fn groups(model: &Model, faces: &[FaceId], tolerance: Option<f64>) -> Vec<Vec<FaceId>> {
+pub(super) fn groups(
+    model: &Model,
+    faces: &[FaceId],
+    tolerance: Option<f64>,
+    cancel: &Cancel,
+) -> Result<Vec<Vec<FaceId>>, Cancelled> {
     let mut joined = Joined::new(faces.len());
     if let Some(tolerance) = tolerance {
         for (a, b) in adjacent(model, faces) {
+            cancel.check()?;
             if joined.root(a) != joined.root(b) && continues(model, faces[a], faces[b], tolerance) {
                 joined.join(a, b);
             }
         }
     }
-    joined.groups().into_iter().map(|group| group.into_iter().map(|i| faces[i]).collect()).collect()
+    Ok(joined.groups().into_iter().map(|group| group.into_iter().map(|i| faces[i]).collect()).collect())
 }
 
 /// Positions of two faces that share an edge which no third face uses, in the order of the edges.

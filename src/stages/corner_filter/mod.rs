@@ -15,7 +15,7 @@ mod edges;
 mod maximal;
 
 use crate::brep::{BodyId, PlacedFaceId};
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Axis, Point, Transform, Vector};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
@@ -89,9 +89,16 @@ pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Res
     let mut of_body: Vec<Option<Vec<LocalOutline>>> = vec![None; model.bodies.len()];
     let mut outlines = Vec::new();
     for (occurrence, faces) in model.occurrences.iter().zip(&placed) {
-        cancel.check().map_err(|c| ModelError::cancelled(Stage::CornerFilter, c))?;
-        let local = of_body[occurrence.body.index()]
-            .get_or_insert_with(|| body_outlines(parsed, occurrence.body, faces, &occurrence.placement, options));
+        let cancelled = |c| ModelError::cancelled(Stage::CornerFilter, c);
+        cancel.check().map_err(cancelled)?;
+        let local = match &mut of_body[occurrence.body.index()] {
+            Some(local) => local,
+            none => {
+                let placement = &occurrence.placement;
+                let found = body_outlines(parsed, occurrence.body, faces, placement, options, cancel);
+                none.insert(found.map_err(cancelled)?)
+            }
+        };
         outlines.extend(local.iter().filter_map(|outline| outline.placed(parsed, faces, &occurrence.placement)));
     }
     Ok(outlines)
@@ -183,18 +190,20 @@ fn body_outlines(
     places: &PlacedFaces,
     placement: &Transform,
     options: &Options,
-) -> Vec<LocalOutline> {
+    cancel: &Cancel,
+) -> Result<Vec<LocalOutline>, Cancelled> {
     let model = &parsed.model;
     let size = parsed.measures.tolerance.size() / placement.scale();
     let tolerance = options.same_surface * size;
     let faces: Vec<_> = model.faces_of(body).filter(|&f| places.find(f).is_some()).collect();
     let shapes = edges::EdgeShapes::of(model, &faces, 1e-3 * tolerance);
-    let groups = maximal::groups(model, &faces, if options.maximal_faces { Some(tolerance) } else { None });
+    let groups = maximal::groups(model, &faces, options.maximal_faces.then_some(tolerance), cancel)?;
     let oriented = model.bodies[body.index()].solid;
     let outline = |group: Vec<crate::brep::FaceId>| {
+        cancel.check()?;
         let loops = boundary::loops(model, &group, &shapes, options.corner_angle_deg.to_radians());
         let axis = if options.axes { axial::axis(parsed, places, &group, &loops, placement, tolerance) } else { None };
-        boundary::outline(model, group, loops, axis, oriented)
+        Ok(boundary::outline(model, group, loops, axis, oriented))
     };
     groups.into_iter().map(outline).collect()
 }

@@ -102,6 +102,10 @@ impl Silhouette {
     fn touch(&mut self, [a, b, c]: [[f64; 2]; 3], spans: &mut [[f64; 2]]) {
         let rows = [a, b, c].map(|p| self.cell(p[1]));
         let (low, high) = (rows[0].min(rows[1]).min(rows[2]), rows[0].max(rows[1]).max(rows[2]));
+        if low == high {
+            let [first, last] = [a, b, c].iter().fold(NOTHING, |span, p| widened_to(span, p[0]));
+            return self.fill(low, self.cell(first), self.cell(last) + 1);
+        }
         for (from, to) in [(a, b), (b, c), (c, a)] {
             self.widen(from, to, spans);
         }
@@ -119,7 +123,7 @@ impl Silhouette {
         let mut x = a[0];
         for (y, span) in (low..).zip(&mut spans[low..=high]) {
             let next = if y == high { b[0] } else { a[0] + slope * ((y + 1) as f64 - a[1]) };
-            *span = [span[0].min(x).min(next), span[1].max(x).max(next)];
+            *span = widened_to(widened_to(*span, x), next);
             x = next;
         }
     }
@@ -190,6 +194,12 @@ impl std::fmt::Debug for Silhouette {
 
 /// A span that covers nothing.
 const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// The span that also covers `x`. Coordinates are numbers: comparing is all there is to it.
+#[inline]
+fn widened_to([first, last]: [f64; 2], x: f64) -> [f64; 2] {
+    [if x < first { x } else { first }, if x > last { x } else { last }]
+}
 
 /// The words of a row that hold first <= x < end, each with the bits asked for.
 fn masks(first: usize, end: usize) -> impl Iterator<Item = (usize, u64)> {

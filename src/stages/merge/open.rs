@@ -3,7 +3,9 @@
 use std::f64::consts::PI;
 
 use super::Merger;
+use crate::brep::sample::Sample;
 use crate::cancel::Cancelled;
+use crate::geometry::bvh::Recent;
 use crate::geometry::{Plane, Vector, any_perpendicular};
 use crate::stages::validate::support::Round;
 
@@ -80,10 +82,11 @@ fn share(merger: &Merger, normal: &Vector) -> f64 {
     let radius = measures.tolerance.length(RADIUS);
     let samples = field.samples(Round::Coarse);
     let step = (samples.len() / SAMPLES).max(1);
-    let near = |s: &&crate::brep::sample::Sample| {
-        let normal = plane.reflect_vector(&s.normal);
-        field.tree().any_within(&plane.reflect(&s.point), radius, |t| field.agree(&t.normal, &normal))
+    let mut recent = Recent::default();
+    let mut near = |s: &&Sample| {
+        let (p, normal) = (plane.reflect(&s.point), plane.reflect_vector(&s.normal));
+        field.touches((&p, &normal), radius, &mut recent, |_| true)
     };
     let asked = samples.iter().step_by(step);
-    asked.clone().filter(near).count() as f64 / asked.count().max(1) as f64
+    asked.clone().filter(|s| near(s)).count() as f64 / asked.count().max(1) as f64
 }

@@ -6,6 +6,7 @@
 
 use super::open::Open;
 use super::{Merger, SymmetryPlane};
+use crate::brep::sample::Sample;
 use crate::cancel::Cancelled;
 use crate::geometry::principal::symmetric_eigen;
 use crate::geometry::{Matrix, Plane, Vector, any_perpendicular};
@@ -119,14 +120,12 @@ pub(super) fn polish(
     needed: f64,
 ) -> Option<(Plane, f64)> {
     let (mut plane, mut residual) = (start, 0.0);
+    let mut guesses = Vec::new();
     for (i, radius) in RADII.iter().enumerate() {
         let round = if i + 3 < RADII.len() { Round::Coarse } else { Round::Middle };
-        let step = Step::of(field, &plane, merger, round, radius * size);
         // Half of it at first: the start may be off.
         let least = if i < 2 { 0.5 * needed } else { needed };
-        if (step.met as f64) < least * field.samples(round).len() as f64 || step.met == 0 {
-            return None;
-        }
+        let step = Step::of(merger, &plane, field.samples(round), radius * size, least, &mut guesses)?;
         residual = (step.squared / step.met as f64).sqrt();
         plane = step.solved(&plane, size, merger)?;
     }
@@ -143,17 +142,34 @@ struct Step {
 }
 
 impl Step {
-    fn of(field: &SurfaceField, plane: &Plane, merger: &Merger, round: Round, radius: f64) -> Self {
+    /// `None` as soon as a smaller share than `least` of the samples can meet the surface. `guesses` are the triangles
+    /// that the samples met in the step before.
+    fn of(
+        merger: &Merger,
+        plane: &Plane,
+        samples: &[Sample],
+        radius: f64,
+        least: f64,
+        guesses: &mut Vec<u32>,
+    ) -> Option<Self> {
+        let field = &merger.validated.field;
         let first = any_perpendicular(&plane.normal);
         let basis = [first, plane.normal.cross(&first)];
         let centroid = merger.parsed.measures.centroid;
         let size = merger.parsed.measures.tolerance.size();
         let mut step = Self { basis, matrix: Matrix::zeros(), right: Vector::zeros(), squared: 0.0, met: 0 };
-        for sample in field.samples(round) {
+        guesses.resize(samples.len(), u32::MAX);
+        let (mut missed, most_missed) = (0, (1.0 - least) * samples.len() as f64);
+        for (sample, guess) in samples.iter().zip(guesses) {
             let image = plane.reflect(&sample.point);
             let normal = plane.reflect_vector(&sample.normal);
-            let accept = |t: &crate::geometry::bvh::Triangle| field.agree(&t.normal, &normal);
-            let Some(hit) = field.tree().nearest_within(&image, radius, accept) else { continue };
+            let Some(hit) = field.nearest((&image, &normal), radius, guess) else {
+                missed += 1;
+                if f64::from(missed) > most_missed {
+                    return None;
+                }
+                continue;
+            };
             let error = hit.normal.dot(&(image - hit.point));
             // How the error changes as the normal tilts along the basis and the offset grows.
             let height = plane.signed_distance(&sample.point);
@@ -166,7 +182,7 @@ impl Step {
             step.squared += error * error;
             step.met += 1;
         }
-        step
+        (step.met > 0).then_some(step)
     }
 
     /// The plane after the step; directions in which nothing is determined stay as they are.

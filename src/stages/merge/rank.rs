@@ -9,6 +9,8 @@ use crate::stages::validate::support::Round;
 const DRAWN: usize = 16;
 /// Silhouettes closer than this (relative) are equal: a few rows of pixels.
 const EQUAL_AREA: f64 = 0.02;
+/// Silhouettes that differ by more than this are not those of planes that the model maps onto each other.
+const UNLIKE_AREA: f64 = 0.004;
 
 /// Sorts the measured planes, best first, and drops those that only the principal axes suggest unless they are as
 /// good as the best: their place below it is an accident of the starting direction.
@@ -125,6 +127,9 @@ fn before((a, p): &(Key, SymmetryPlane), (b, q): &(Key, SymmetryPlane)) -> bool 
         if (x - y).abs() > 1e-3 {
             return x < y;
         }
+    }
+    if (a.silhouette / b.silhouette - 1.0).abs() > UNLIKE_AREA {
+        return a.silhouette < b.silhouette;
     }
     // Nothing tells them apart but the coordinates: images of each other under a symmetry of the model.
     let (n, m) = (p.plane.canonical().normal, q.plane.canonical().normal);

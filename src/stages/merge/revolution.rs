@@ -107,17 +107,29 @@ pub(super) fn restrict(merger: &Merger, axes: &[Axis], pool: &mut Vec<SymmetryPl
     Ok(())
 }
 
-/// A direction at right angles to the axis: the one along which the surface spreads most. Where it spreads equally,
-/// any will do, for the body cannot tell them apart.
+/// Spreads across the axis that differ by less than this share are equal: what the samples miss of a round body.
+const ROUND: f64 = 0.005;
+
+/// A direction at right angles to the axis: the one along which the surface spreads most. Where it spreads equally the
+/// body cannot tell them apart, but its mesh can, a polygon across the axis: one towards a corner of that, so that the
+/// shadows are the same in every pose.
 fn direction_across(merger: &Merger, axis: &Axis) -> Vector {
     let first = any_perpendicular(&axis.direction);
     let second = axis.direction.cross(&first);
-    let (mut cosine, mut sine) = (0.0, 0.0);
+    let (mut cosine, mut sine, mut spread) = (0.0, 0.0, 0.0);
     for sample in merger.validated.field.samples(Round::Full) {
         let d = sample.point - axis.point;
         let (x, y) = (d.dot(&first), d.dot(&second));
         cosine += x * x - y * y;
         sine += 2.0 * x * y;
+        spread += x * x + y * y;
+    }
+    let corners = merger.parsed.mesh.points.iter().map(|p| axis.radial(p));
+    let farthest = corners.max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+    if cosine.hypot(sine) <= ROUND * spread
+        && let Some(corner) = farthest.and_then(|corner| corner.try_normalize(0.0))
+    {
+        return corner;
     }
     let angle = 0.5 * f64::atan2(sine, cosine);
     first * angle.cos() + second * angle.sin()

@@ -1,6 +1,7 @@
 //! Eq. (3): cyclic matching of corner distances.
 
 use super::{Correspondence, Options, Order};
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Point;
 
 /// The position on the second loop (of `n` corners) of corner `k` of the first.
@@ -17,25 +18,59 @@ fn sides(corners: &[Point]) -> Vec<f64> {
     corners.iter().zip(next).map(|(p, q)| (q - p).norm()).collect()
 }
 
-/// Shows `keep` every correspondence in the given order whose sum is at most `limit` (mm) for each corner.
-pub(super) fn matches(
-    a: &[Point],
-    b: &[Point],
-    order: Order,
-    limit: f64,
-    options: &Options,
-    keep: &mut impl FnMut(Correspondence),
-) {
-    let (p, q) = (sides(a), sides(b));
-    if p.len() == q.len() {
-        let total = limit * p.len() as f64;
-        for offset in 0..q.len() {
-            if difference(&p, &q, offset, order, total, options.absolute) <= total {
-                keep(Correspondence::Cyclic { offset: offset as u32, order });
+/// How correspondences are looked for.
+pub(super) struct Search<'a> {
+    /// Largest sum for each corner, mm.
+    pub limit: f64,
+    pub options: &'a Options,
+    pub cancel: &'a Cancel,
+}
+
+impl Search<'_> {
+    /// Shows `keep` every correspondence in the given order whose sum is within the limit.
+    pub(super) fn matches(
+        &self,
+        a: &[Point],
+        b: &[Point],
+        order: Order,
+        keep: &mut impl FnMut(Correspondence),
+    ) -> Result<(), Cancelled> {
+        let (p, q) = (sides(a), sides(b));
+        if p.len() == q.len() {
+            let total = self.limit * p.len() as f64;
+            for offset in 0..q.len() {
+                self.cancel.check()?;
+                if difference(&p, &q, offset, order, total, self.options.absolute) <= total {
+                    keep(Correspondence::Cyclic { offset: offset as u32, order });
+                }
+            }
+        } else if p.len().abs_diff(q.len()) <= self.options.extra_corners {
+            self.subsequences(a, b, order, keep)?;
+        }
+        Ok(())
+    }
+
+    /// Correspondences of all corners of the shorter loop with a cyclic subsequence of the longer one.
+    ///
+    /// From each start a dynamic program over (corners matched, corners left out) keeps the smallest sum.
+    fn subsequences(
+        &self,
+        a: &[Point],
+        b: &[Point],
+        order: Order,
+        keep: &mut impl FnMut(Correspondence),
+    ) -> Result<(), Cancelled> {
+        let swapped = a.len() > b.len();
+        let (short, long) = if swapped { (b, a) } else { (a, b) };
+        let total = self.limit * short.len() as f64;
+        for offset in 0..long.len() {
+            self.cancel.check()?;
+            if let Some(chain) = subsequence(short, long, offset, order, total) {
+                let pair = |(i, j): (usize, usize)| if swapped { (j as u32, i as u32) } else { (i as u32, j as u32) };
+                keep(Correspondence::Listed { corners: chain.into_iter().enumerate().map(pair).collect(), order });
             }
         }
-    } else if p.len().abs_diff(q.len()) <= options.extra_corners {
-        subsequences(a, b, order, limit, keep);
+        Ok(())
     }
 }
 
@@ -53,21 +88,6 @@ fn difference(p: &[f64], q: &[f64], offset: usize, order: Order, limit: f64, abs
         }
     }
     sum.abs()
-}
-
-/// Correspondences of all corners of the shorter loop with a cyclic subsequence of the longer one.
-///
-/// From each start a dynamic program over (corners matched, corners left out) keeps the smallest sum.
-fn subsequences(a: &[Point], b: &[Point], order: Order, limit: f64, keep: &mut impl FnMut(Correspondence)) {
-    let swapped = a.len() > b.len();
-    let (short, long) = if swapped { (b, a) } else { (a, b) };
-    let total = limit * short.len() as f64;
-    for offset in 0..long.len() {
-        if let Some(chain) = subsequence(short, long, offset, order, total) {
-            let pair = |(i, j): (usize, usize)| if swapped { (j as u32, i as u32) } else { (i as u32, j as u32) };
-            keep(Correspondence::Listed { corners: chain.into_iter().enumerate().map(pair).collect(), order });
-        }
-    }
 }
 
 /// The best subsequence of `long` that starts at `offset`, as positions; `None` if its sum is above `total`.
@@ -112,7 +132,8 @@ mod tests {
 
     fn found(a: &[Point], b: &[Point], order: Order, options: &Options) -> Vec<Correspondence> {
         let mut all = Vec::new();
-        matches(a, b, order, 1e-3, options, &mut |c| all.push(c));
+        let search = Search { limit: 1e-3, options, cancel: &Cancel::new() };
+        search.matches(a, b, order, &mut |c| all.push(c)).unwrap();
         all
     }
 
@@ -139,6 +160,17 @@ mod tests {
         let image = points(&[[0.0, 0.0], [0.0, 3.0], [-4.0, 0.0]]);
         assert_eq!(found(&triangle, &image, Order::Reversed, &Options::default()).len(), 1);
         assert!(found(&triangle, &image, Order::Same, &Options::default()).is_empty());
+    }
+
+    #[test]
+    fn a_search_ends_when_cancelled() {
+        let (options, cancel) = (Options::default(), Cancel::new());
+        cancel.cancel();
+        let search = Search { limit: 1e-3, options: &options, cancel: &cancel };
+        let loops = [3, 4].map(|n| (0..n).map(|i| Point::new(f64::from(i), 0.0, 0.0)).collect::<Vec<_>>());
+        for other in &loops {
+            assert!(search.matches(&loops[0], other, Order::Same, &mut |_| panic!("found one")).is_err());
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@
 pub mod buckets;
 mod cyclic;
 
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Point;
 use crate::stages::corner_filter::Outline;
 use crate::stages::parse::Parsed;
@@ -163,14 +163,14 @@ pub fn pair_match(
     let mut matcher = Matcher {
         outlines,
         options,
+        cancel,
         size,
         room: options.pairs_per_face.saturating_mul(outlines.len()).max(4096),
         matches: Matches::default(),
     };
     let plan = buckets::plan(outlines, &parsed.measures, options);
     for bucket in &plan {
-        cancel.check().map_err(|c| ModelError::cancelled(Stage::PairMatch, c))?;
-        matcher.bucket(bucket);
+        matcher.bucket(bucket).map_err(|c| ModelError::cancelled(Stage::PairMatch, c))?;
     }
     Ok(matcher.matches)
 }
@@ -179,6 +179,7 @@ pub fn pair_match(
 struct Matcher<'a> {
     outlines: &'a [Outline],
     options: &'a Options,
+    cancel: &'a Cancel,
     size: f64,
     /// Pairs that may still be kept.
     room: usize,
@@ -187,20 +188,22 @@ struct Matcher<'a> {
 
 impl Matcher<'_> {
     /// Lets each face of the bucket's subset meet all faces of its neighbourhood.
-    fn bucket(&mut self, bucket: &buckets::Bucket) {
+    fn bucket(&mut self, bucket: &buckets::Bucket) -> Result<(), Cancelled> {
         for &(a, b) in &bucket.meetings {
             if self.room == 0 {
                 self.matches.truncated = true;
-                return;
+                return Ok(());
             }
-            self.meet(a, b, bucket.weight);
+            self.cancel.check()?;
+            self.meet(a, b, bucket.weight)?;
         }
+        Ok(())
     }
 
-    fn meet(&mut self, a: u32, b: u32, weight: f64) {
+    fn meet(&mut self, a: u32, b: u32, weight: f64) -> Result<(), Cancelled> {
         let (p, q) = (&self.outlines[a as usize], &self.outlines[b as usize]);
         if self.options.buckets && !buckets::alike(p, q, self.size) {
-            return;
+            return Ok(());
         }
         let mut keep = |correspondence: Correspondence| {
             if self.room > 0 {
@@ -212,16 +215,21 @@ impl Matcher<'_> {
             if self.options.buckets && a != b {
                 keep(Correspondence::Centroids);
             }
-            return;
+            return Ok(());
         }
-        let limit = self.options.corner_distance * self.size;
+        let search = cyclic::Search {
+            limit: self.options.corner_distance * self.size,
+            options: self.options,
+            cancel: self.cancel,
+        };
         let both = !(self.options.orientation && p.oriented && q.oriented);
         for order in [Order::Reversed, Order::Same] {
             // A face is always its own image in the same order: that says nothing of symmetry, unless it has no side.
             if order == Order::Same && a == b && !both {
                 continue;
             }
-            cyclic::matches(&p.corners, &q.corners, order, limit, self.options, &mut keep);
+            search.matches(&p.corners, &q.corners, order, &mut keep)?;
         }
+        Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! Stage 1: the bytes of a CAD file -> B-rep, mesh and measures.
 //!
-//! In: the bytes of a STEP ([`step`]), IGES ([`iges`]) or OCCT `.brep` file ([`occt`]); what a file is, its first bytes
+//! In: the bytes of a STEP (`step`), IGES (`iges`) or OCCT `.brep` file (`occt`); what a file is, its first bytes
 //! say. Out: [`Parsed`].
 //!
 //! Method: a reader for each format makes the same [`Model`]; then the faces are tessellated and measured.

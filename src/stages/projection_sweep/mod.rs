@@ -2,9 +2,9 @@
 //!
 //! In: the model's mesh and its symmetries. Out: a [`CanonicalFrame`]: the normal of the symmetry plane, the normal
 //! of the plane of smallest projected area among those that contain it, and their cross product.
-//! Method: the paper's section V. The default measures the projected areas by exact spans ([`slices`]), turns through
+//! Method: the paper's section V. The default measures the projected areas by exact spans (`slices`), turns through
 //! all 180 planes from a direction that moves with the model, and refines the best angles by golden section; the
-//! paper's profile turns 90 planes from an arbitrary direction and counts pixels ([`pixels`]).
+//! paper's profile turns 90 planes from an arbitrary direction and counts pixels (`pixels`).
 //! Without a symmetry the first axis comes from a fallback frame: the rectilinear one (Lian et al. 2010) where the
 //! model is rectilinear, else continuous PCA (Vranic 2001); of its three axes the one with the smallest shadow, the
 //! same preference by which stage 6 ranks equal symmetries.
@@ -14,15 +14,17 @@
 mod curve;
 mod pixels;
 mod reference;
+mod shadow;
 mod slices;
 
+use crate::alignment::npca;
 use crate::cancel::Cancel;
 use crate::geometry::{Frame, Vector};
 use crate::stages::merge::Symmetries;
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
 
-use curve::Shadows;
+pub use curve::Shadows;
 pub use pixels::PixelShadows;
 use reference::{Turntable, shadow_along};
 pub use slices::Slices;
@@ -45,6 +47,9 @@ pub enum SecondAxis {
     Sweep,
     /// The direction of the largest variance of the surface in the first plane.
     Pca,
+    /// Of the direction of the smallest projected area and the one at right angles to it the one that more of the
+    /// surface faces.
+    Normals,
 }
 
 /// Settings of the sweep.
@@ -215,8 +220,24 @@ fn turn(
     } else {
         curve::smallest(shadows, &sweep, options, cancel)?
     };
+    let choice = match options.second_axis {
+        SecondAxis::Normals => facing(parsed, table, choice),
+        _ => choice,
+    };
     sweep.chosen = choice.angle.rem_euclid(std::f64::consts::PI);
     Ok(Swept { choice, sweep, axisymmetric })
+}
+
+/// The choice, turned a quarter where more of the surface faces that way.
+fn facing(parsed: &Parsed, table: &Turntable, choice: curve::Choice) -> curve::Choice {
+    let normals = npca::covariance(&parsed.mesh);
+    let faced = |angle: f64| table.direction(angle).dot(&(normals * table.direction(angle)));
+    let turned = choice.angle + std::f64::consts::FRAC_PI_2;
+    if faced(turned) > faced(choice.angle) {
+        curve::Choice { angle: turned, area: choice.third_area, third_area: choice.area }
+    } else {
+        choice
+    }
 }
 
 /// The unit direction at `angle` from `u` towards `v`.

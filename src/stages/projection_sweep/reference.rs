@@ -9,9 +9,7 @@ use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 
-use super::curve::Shadows;
-use super::slices::Slices;
-use super::{Options, Source, towards};
+use super::{Options, Source, shadow, towards};
 
 /// The first canonical axis.
 pub(super) struct Reference {
@@ -68,10 +66,8 @@ pub(super) fn shadow_along(
     options: &Options,
     cancel: &Cancel,
 ) -> Result<f64, Cancelled> {
-    let table =
-        Turntable { axis: *across, u: *view, v: across.cross(view), ..Turntable::arbitrary(&parsed.measures, across) };
-    let mut slices = Slices::cut(&parsed.mesh, &table, options.slices, cancel)?;
-    Ok(slices.areas(&[0.0], cancel)?[0])
+    let along = across.cross(view);
+    shadow::area(&parsed.mesh, [across, &along], &parsed.measures.centroid, options.slices, cancel)
 }
 
 /// An axis and two directions at right angles to it: angle 0 looks along `u`, a quarter turn along `v`.
@@ -92,8 +88,12 @@ const ISOTROPIC: f64 = 1e-6;
 impl Turntable {
     /// Starts somewhere: the paper's arbitrary starting orientation.
     pub(super) fn arbitrary(measures: &Measures, axis: &Vector) -> Self {
-        let u = any_perpendicular(axis);
-        Self { axis: *axis, u, v: axis.cross(&u), centre: measures.centroid, largest_variance: 0.0 }
+        Self::about(measures, axis, &any_perpendicular(axis))
+    }
+
+    /// Starts at a direction at right angles to the axis.
+    pub(super) fn about(measures: &Measures, axis: &Vector, start: &Vector) -> Self {
+        Self { axis: *axis, u: *start, v: axis.cross(start), centre: measures.centroid, largest_variance: 0.0 }
     }
 
     /// Starts with `u` at the largest variance of the surface across the axis, so that it moves with the model.

@@ -12,6 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::brep::Mesh;
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
+use crate::stages::parse::Parsed;
 
 use super::curve::Shadows;
 use super::reference::Turntable;
@@ -36,6 +37,17 @@ struct Slice {
 }
 
 impl Slices {
+    /// Cuts the model for the shadows along directions at right angles to `axis`, angles counted from `start`.
+    pub fn about(
+        parsed: &Parsed,
+        axis: &Vector,
+        start: &Vector,
+        count: u32,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
+        Self::cut(&parsed.mesh, &Turntable::about(&parsed.measures, axis, start), count, cancel)
+    }
+
     /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
     pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
         let count = count.clamp(1, 65_536) as usize;
@@ -52,7 +64,7 @@ impl Slices {
         let cut = |b: &Range<usize>| cancel.check().map(|()| wire.cut(b.clone()));
         let parts: Vec<_> = match blocks.as_slice() {
             [one] => vec![cut(one)?],
-            many => many.par_iter().map(cut).collect::<Result<_, _>>()?,
+            many => many.par_iter().map(|b| cancel.account().within(|| cut(b))).collect::<Result<_, _>>()?,
         };
         Ok(Self { thickness, slices: parts.into_iter().flatten().collect() })
     }
@@ -64,9 +76,9 @@ impl Shadows for Slices {
         let mut areas = vec![0.0; angles.len()];
         let mut walkers = Vec::new();
         for slice in &self.slices {
-            cancel.check()?;
             slice.start(directions[0], &mut walkers);
             for (area, &direction) in areas.iter_mut().zip(&directions) {
+                cancel.check()?;
                 *area += self.thickness * shadow_length(&slice.points, &mut walkers, direction);
             }
         }
@@ -194,14 +206,15 @@ impl Wire {
 
     /// Cuts the slices of a block.
     fn cut(&self, block: Range<usize>) -> Vec<Slice> {
-        let crossings = Crossings::new(self, &block);
-        let mut pieces: Vec<_> = crossings.pieces();
+        let (mut points, pieces) = Crossings::new(self, &block).pieces();
         let mut slices = vec![Slice::default(); block.len()];
-        for (slice, points) in &mut pieces {
-            let slice = &mut slices[*slice - block.start];
+        let mut from = 0;
+        for (end, slice) in pieces {
+            let slice = &mut slices[slice - block.start];
             let start = slice.points.len();
-            push_hull(points, &mut slice.points);
+            push_hull(&mut points[from..end], &mut slice.points);
             slice.hulls.push(start..slice.points.len());
+            from = end;
         }
         slices
     }
@@ -281,26 +294,56 @@ impl Crossings {
         self.parents[a.max(b) as usize] = a.min(b);
     }
 
-    /// The points of each piece with the slice it lies in, in order of their first crossing.
-    fn pieces(mut self) -> Vec<(usize, Vec<Flat>)> {
+    /// Numbers the pieces in order of their first crossings: the piece of each crossing, and how many there are.
+    fn numbered(&mut self) -> (Vec<u32>, usize) {
         let mut piece_of = vec![u32::MAX; self.points.len()];
-        let mut pieces: Vec<(usize, Vec<Flat>)> = Vec::new();
+        let mut count = 0;
         for i in 0..self.points.len() {
+            // The root is the first crossing of its piece.
             let root = self.root(i as u32) as usize;
-            if piece_of[root] == u32::MAX {
-                piece_of[root] = pieces.len() as u32;
-                pieces.push((self.slices[i] as usize, Vec::new()));
+            if root == i {
+                piece_of[i] = count;
+                count += 1;
             }
-            pieces[piece_of[root] as usize].1.push(self.points[i]);
+            piece_of[i] = piece_of[root];
         }
-        pieces
+        (piece_of, count as usize)
+    }
+
+    /// The points piece by piece, where each piece ends, and the slice that it lies in.
+    fn pieces(mut self) -> (Vec<Flat>, Vec<(usize, usize)>) {
+        let (piece_of, count) = self.numbered();
+        let mut pieces = vec![(0, 0); count];
+        for (&piece, &slice) in piece_of.iter().zip(&self.slices) {
+            let (size, in_slice) = &mut pieces[piece as usize];
+            (*size, *in_slice) = (*size + 1, slice as usize);
+        }
+        // Sizes become starts, and as points are put in, ends.
+        let mut start = 0;
+        for (size, _) in &mut pieces {
+            start += std::mem::replace(size, start);
+        }
+        let mut points = vec![[0.0; 2]; self.points.len()];
+        for (&piece, &point) in piece_of.iter().zip(&self.points) {
+            let end = &mut pieces[piece as usize].0;
+            points[*end] = point;
+            *end += 1;
+        }
+        (points, pieces)
     }
 }
 
 /// Appends the convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain).
-fn push_hull(points: &mut Vec<Flat>, hull: &mut Vec<Flat>) {
+fn push_hull(points: &mut [Flat], hull: &mut Vec<Flat>) {
     points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    points.dedup();
+    let mut distinct = 1;
+    for i in 1..points.len() {
+        if points[i] != points[distinct - 1] {
+            points[distinct] = points[i];
+            distinct += 1;
+        }
+    }
+    let points = &points[..distinct.min(points.len())];
     let base = hull.len();
     if points.len() < 3 {
         hull.extend_from_slice(points);

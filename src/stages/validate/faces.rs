@@ -6,6 +6,7 @@ use super::Options;
 use super::shape::{histogram_correlation, wasserstein};
 use super::support::SurfaceField;
 use crate::brep::sample::sample_face;
+use crate::geometry::bvh::Recent;
 use crate::geometry::{Plane, Point, Vector};
 use crate::stages::corner_filter::Outline;
 use crate::stages::parse::Parsed;
@@ -118,20 +119,23 @@ impl<'a> FaceSamples<'a> {
     /// Whether the mirrored samples of one face lie on the other.
     fn lies_on(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> bool {
         let faces = &self.outlines[b as usize].faces;
-        let (near, far) = (self.options.distance_95 * self.size, self.options.distance_max * self.size);
+        let far = self.options.distance_max * self.size;
+        let near = far.min(self.options.distance_95 * self.size);
         let samples = self.of(a);
-        let mut outside = 0;
+        let (mut outside, mut recent) = (0, Recent::default());
         for (p, n) in samples.iter() {
             let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
-            let accept = |t: &crate::geometry::bvh::Triangle| {
-                faces.binary_search(&crate::brep::PlacedFaceId(t.id)).is_ok() && field.agree(&t.normal, &normal)
-            };
-            match field.tree().nearest_within(&image, far, accept) {
-                None => return false,
-                Some(nearest) => outside += usize::from(nearest.squared > near * near),
+            let mut within =
+                |radius| field.touches((&image, &normal), radius, &mut recent, |f| faces.binary_search(&f).is_ok());
+            if within(near) {
+                continue;
+            }
+            outside += 1;
+            if outside * 20 > samples.len() || !within(far) {
+                return false;
             }
         }
-        outside * 20 <= samples.len()
+        true
     }
 }
 

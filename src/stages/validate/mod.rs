@@ -11,10 +11,11 @@
 //! Cost: a few hundred queries of the triangle tree for each plane that is kept, some tens for each that is dropped.
 
 pub mod faces;
+mod quads;
 pub mod shape;
 pub mod support;
 
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Plane, PlaneIndex};
 use crate::stages::corner_filter::Outline;
 use crate::stages::isometry::{Candidate, Candidates, Source};
@@ -146,7 +147,7 @@ pub fn validate(
         }
     } else {
         let mut best: f64 = 0.0;
-        for group in distinct(parsed, matches, &candidates.mirrors, options) {
+        for group in distinct(parsed, matches, &candidates.mirrors, options, cancel).map_err(cancelled)? {
             cancel.check().map_err(cancelled)?;
             let least = if group.paired { 0.05 } else { SELF_EVIDENT - DOUBT };
             let needed = (best - options.slack).max(least);
@@ -196,7 +197,13 @@ struct Group {
 
 /// Joins candidates into distinct planes by leaders, the most reliable source and the largest vote first, and keeps
 /// the most voted planes of each source.
-fn distinct(parsed: &Parsed, matches: &Matches, candidates: &[Candidate], options: &Options) -> Vec<Group> {
+fn distinct(
+    parsed: &Parsed,
+    matches: &Matches,
+    candidates: &[Candidate],
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Vec<Group>, Cancelled> {
     let measures = &parsed.measures;
     let mut order: Vec<_> = candidates.iter().filter(|c| c.plane.offset.is_finite()).collect();
     order.sort_by(|a, b| a.source.cmp(&b.source).then(b.weight.total_cmp(&a.weight)));
@@ -205,6 +212,7 @@ fn distinct(parsed: &Parsed, matches: &Matches, candidates: &[Candidate], option
     let of_two = |c: &Candidate| c.pair.is_some_and(|i| matches.pairs[i as usize].is_of_two());
     let mut groups: Vec<Group> = Vec::new();
     for candidate in order {
+        cancel.check()?;
         if let Some(i) = index.find(&candidate.plane) {
             groups[i].weight += candidate.weight;
             groups[i].paired |= of_two(candidate);
@@ -225,7 +233,7 @@ fn distinct(parsed: &Parsed, matches: &Matches, candidates: &[Candidate], option
         *count += 1;
         *count <= options.planes
     });
-    groups
+    Ok(groups)
 }
 
 /// Support from which a plane needs no pair to speak for it: the halves may be split differently.

@@ -1,20 +1,26 @@
 //! Surface support: the share of a surface that an isometry maps onto the surface.
 
+use super::quads::{Quads, is_near};
 use crate::brep::PlacedFaceId;
 use crate::brep::sample::{Sample, sample_mesh};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::bvh::Bvh;
+use crate::geometry::bvh::{Around, Bvh, Nearest, Recent};
+use crate::geometry::sides::Neighbours;
 use crate::geometry::{Isometry, Point, Vector};
 use crate::stages::parse::Parsed;
 
 /// Every how many-th sample belongs to the first round, and to the first two.
 const STRIDES: [usize; 2] = [40, 5];
 
+/// Faces with fewer samples are asked sample by sample.
+const FEW: usize = 4;
+
 /// The surface of a model, ready to be asked whether points lie on it.
 #[derive(Clone, Debug)]
 pub struct SurfaceField {
     /// Triangles under the number of their face.
     tree: Bvh,
+    quads: Quads,
     /// In an order in which every beginning is spread over the surface (as far as the rounds go).
     samples: Vec<Sample>,
     /// Samples in the first, first two, and all rounds.
@@ -23,6 +29,8 @@ pub struct SurfaceField {
     radius: f64,
     /// Least cosine between normals that agree.
     cosine: f64,
+    /// Where normals that agree point, roughly.
+    agreeing: Neighbours,
     /// Whether the faces have an outside; without it, opposite normals agree too.
     oriented: bool,
 }
@@ -55,17 +63,13 @@ impl SurfaceField {
         let rounds = [upto(0), upto(1), upto(2)];
         let samples = order.iter().map(|&i| samples[i]).collect();
         let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
-        Self { tree, samples, rounds, radius: parsed.measures.tolerance.length(share), cosine, oriented }
+        let (radius, agreeing) = (parsed.measures.tolerance.length(share), Neighbours::within(cosine, !oriented));
+        Self { tree, quads: Quads::of(mesh), samples, rounds, radius, cosine, agreeing, oriented }
     }
 
     /// The samples of a round and those before it.
     pub fn samples(&self, round: Round) -> &[Sample] {
         &self.samples[..self.rounds[round as usize]]
-    }
-
-    /// The triangles, each under the number of its placed face.
-    pub fn tree(&self) -> &Bvh {
-        &self.tree
     }
 
     /// Distance within which a point lies on the surface, mm.
@@ -79,13 +83,30 @@ impl SurfaceField {
         cosine >= self.cosine || (!self.oriented && -cosine >= self.cosine)
     }
 
-    /// Whether the surface has a point near `p` with this normal.
-    pub fn holds(&self, p: &Point, normal: &Vector) -> bool {
-        self.tree.any_within(p, self.radius, |t| self.agree(&t.normal, normal))
+    /// The point of the surface nearest to `p` of those with this normal, if one is within `radius`. `guess` as in
+    /// [`Bvh::nearest_around`].
+    pub fn nearest(&self, (p, normal): (&Point, &Vector), radius: f64, guess: &mut u32) -> Option<Nearest> {
+        let around = Around { point: p, radius, sides: self.agreeing.of(normal) };
+        self.tree.nearest_around(&around, guess, |t| self.agree(&t.normal, normal))
     }
 
-    fn maps(&self, isometry: &Isometry, sample: &Sample) -> bool {
-        self.holds(&isometry.apply(&sample.point), &(isometry.rotation * sample.normal))
+    /// Whether a face that `accept` takes has a point within `radius` of `p` with this normal. `recent` as in
+    /// [`Bvh::any_around`].
+    pub fn touches(
+        &self,
+        (p, normal): (&Point, &Vector),
+        radius: f64,
+        recent: &mut Recent,
+        accept: impl Fn(PlacedFaceId) -> bool,
+    ) -> bool {
+        let around = Around { point: p, radius, sides: self.agreeing.of(normal) };
+        self.tree.any_around(&around, recent, |t| self.agree(&t.normal, normal) && accept(PlacedFaceId(t.id)))
+    }
+
+    /// Whether the isometry maps a sample onto the surface. `recent` as in [`Bvh::any_around`].
+    fn maps(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
+        let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
+        self.touches((&p, &normal), self.radius, recent, |_| true)
     }
 
     /// The share of the samples that `isometry` maps onto the surface, 0 to 1.
@@ -108,22 +129,37 @@ impl SurfaceField {
     }
 
     fn hits(&self, isometry: &Isometry, samples: &[Sample], cancel: &Cancel) -> Result<usize, Cancelled> {
-        let mut hits = 0;
+        let (mut hits, mut recent) = (0, Recent::default());
         for chunk in samples.chunks(4096) {
             cancel.check()?;
-            hits += chunk.iter().filter(|s| self.maps(isometry, s)).count();
+            for of_face in chunk.chunk_by(|a, b| a.face == b.face) {
+                hits += if of_face.len() >= FEW && self.maps_quad(isometry, &of_face[0], &mut recent) {
+                    of_face.len()
+                } else {
+                    of_face.iter().filter(|s| self.maps(isometry, s, &mut recent)).count()
+                };
+            }
         }
         Ok(hits)
+    }
+
+    /// Whether the whole face of a sample is mapped onto one other, which can be told of a quadrilateral by its corners.
+    fn maps_quad(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
+        let Some(corners) = self.quads.get(sample.face) else { return false };
+        let image_of = |recent: &Recent| self.quads.get(PlacedFaceId(self.tree.id_of(recent.latest()?)?));
+        self.maps(isometry, sample, recent)
+            && image_of(recent)
+                .is_some_and(|image| corners.iter().all(|corner| is_near(image, &isometry.apply(corner), self.radius)))
     }
 
     /// The coarse support, or `None` as soon as it is (with three standard deviations) below `needed`.
     pub fn reaches(&self, isometry: &Isometry, needed: f64) -> Option<f64> {
         let samples = self.samples(Round::Coarse);
-        let mut hits = 0;
+        let (mut hits, mut recent) = (0, Recent::default());
         // A step coprime to most counts spreads also the first few samples over the whole surface.
         let step = spread_step(samples.len());
         for n in 1..=samples.len() {
-            hits += usize::from(self.maps(isometry, &samples[n * step % samples.len()]));
+            hits += usize::from(self.maps(isometry, &samples[n * step % samples.len()], &mut recent));
             if n >= 16 && n % 8 == 0 {
                 let share = hits as f64 / n as f64;
                 let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();

@@ -21,7 +21,7 @@ pub fn csv(store: &Store, dir: &Path) -> Result<()> {
         let file = |kind: &str| dir.join(format!("{}.{kind}.csv", method.name()));
         let arrays = [("magnitude", store.magnitudes(method), MAGNITUDES), ("phase", store.phases(method), PHASES)];
         for (kind, numbers, columns) in arrays {
-            let of = numbers.unwrap_or_default().chunks_exact(columns).map(Ok);
+            let of = numbers?.chunks_exact(columns).map(Ok);
             rows(store, &file(kind), of)?;
         }
         rows(store, &file("frame"), (0..store.len()).map(|i| frame(store, method, i)))?;

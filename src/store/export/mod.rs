@@ -57,8 +57,7 @@ fn name_of<T: Serialize>(value: &T) -> Result<String> {
 
 /// The 12 numbers of the frame of model `i`.
 fn frame(store: &Store, method: Method, i: usize) -> Result<[f64; 12]> {
-    let frame = store.frame(method, i).ok_or_else(|| store.error(format!("no frame of {}", store.id(i))))?;
-    Ok(super::record::frame_numbers(&frame))
+    Ok(super::record::frame_numbers(&store.frame(method, i)?))
 }
 
 fn make(dir: &Path) -> Result<()> {

@@ -18,7 +18,7 @@ pub fn npy(store: &Store, dir: &Path) -> Result<()> {
         let name = method.name();
         let arrays = [("magnitude", store.magnitudes(method), MAGNITUDES), ("phase", store.phases(method), PHASES)];
         for (kind, rows, columns) in arrays {
-            let bytes = rows.unwrap_or_default().iter().flat_map(|x| x.to_le_bytes());
+            let bytes = rows?.iter().flat_map(|x| x.to_le_bytes());
             array(&dir.join(format!("{name}.{kind}.npy")), "<f4", &[n, columns], bytes)?;
         }
         let frames = (0..n).map(|i| frame(store, method, i)).collect::<Result<Vec<_>>>()?;

@@ -11,7 +11,6 @@ use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
 
 use super::{Facts, frame, make};
-use crate::alignment::Method;
 use crate::error::{Result, RunError};
 use crate::stages::descriptor::{MAGNITUDES, PHASES};
 use crate::store::Store;
@@ -44,7 +43,8 @@ pub fn parquet(store: &Store, dir: &Path) -> Result<()> {
     for &method in store.methods() {
         table(&dir.join(format!("{}.parquet", method.name())), ROWS, &all, |group, models| {
             let frames = models.iter().map(|i| frame(store, method, *i)).collect::<Result<Vec<_>>>()?;
-            Ok(of_method(group, store, method, models, &frames.concat()))
+            let descriptors = (store.magnitudes(method)?, store.phases(method)?);
+            Ok(of_method(group, store, descriptors, models, &frames.concat()))
         })?;
     }
     Ok(())
@@ -87,14 +87,21 @@ fn of_facts(group: &mut Group, facts: &[Facts]) -> Done<()> {
     texts(group, facts.iter().map(|f| f.source.as_str()))
 }
 
-fn of_method(group: &mut Group, store: &Store, method: Method, models: &[usize], frames: &[f64]) -> Done<()> {
-    let part = |numbers: Option<&[f32]>, columns: usize| -> Vec<f32> {
-        let rows = numbers.unwrap_or_default().chunks_exact(columns);
+/// `magnitudes`, `phases`: those of all models of the store.
+fn of_method(
+    group: &mut Group,
+    store: &Store,
+    (magnitudes, phases): (&[f32], &[f32]),
+    models: &[usize],
+    frames: &[f64],
+) -> Done<()> {
+    let part = |numbers: &[f32], columns: usize| -> Vec<f32> {
+        let rows = numbers.chunks_exact(columns);
         rows.skip(models[0]).take(models.len()).flatten().copied().collect()
     };
     texts(group, models.iter().map(|i| store.id(*i)))?;
-    column::<FloatType>(group, part(store.magnitudes(method), MAGNITUDES), Some(MAGNITUDES))?;
-    column::<FloatType>(group, part(store.phases(method), PHASES), Some(PHASES))?;
+    column::<FloatType>(group, part(magnitudes, MAGNITUDES), Some(MAGNITUDES))?;
+    column::<FloatType>(group, part(phases, PHASES), Some(PHASES))?;
     column::<DoubleType>(group, frames.iter().copied(), Some(12))
 }
 
