@@ -8,7 +8,8 @@
 //! turned with the principal axes; the best planes are refined by the iterations of the paper: mirror, find the nearest
 //! points, fit the plane anew (here point to surface, weighted by the Gaussian).
 //! Cost: a million and a half looks into the grid and some thirty thousand nearest points: around 100 ms.
-//! It does not promise planes far from the centroid: those within 0.06 D of it are searched.
+//! It does not promise planes far from the centroid (those within 0.06 D of it are searched), nor the same of two planes
+//! in every pose where they are nearly as symmetric.
 
 use std::f64::consts::PI;
 

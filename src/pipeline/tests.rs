@@ -49,7 +49,11 @@ fn record(number: f64) -> ModelRecord {
         magnitude: vec![number as f32; MAGNITUDES],
         phase: vec![0.5; PHASES],
     };
-    ModelRecord { summary, thumbnail: vec![7; THUMBNAIL * THUMBNAIL], poses: Method::ALL.map(pose).to_vec() }
+    ModelRecord {
+        summary,
+        thumbnail: vec![7; THUMBNAIL * THUMBNAIL],
+        poses: Settings::default().methods.iter().map(|&method| pose(method)).collect(),
+    }
 }
 
 /// What the steps did, and when they ask for a stop.

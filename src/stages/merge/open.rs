@@ -3,7 +3,6 @@
 use std::f64::consts::PI;
 
 use super::Merger;
-use crate::brep::sample::Sample;
 use crate::cancel::Cancelled;
 use crate::geometry::bvh::Recent;
 use crate::geometry::{Plane, Vector, any_perpendicular};
@@ -28,21 +27,15 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// Whether a direction is among them.
-    pub fn has(&self, normal: &Vector) -> bool {
-        self.across.is_none_or(|axis| axis.dot(normal).abs() <= 0.035)
-    }
-
     /// The directions whose planes through the centroid map most of the surface near itself, best first.
     pub fn promising(&self, merger: &Merger) -> Result<Vec<Vector>, Cancelled> {
         let mut rated = Vec::new();
         for direction in self.directions() {
             merger.cancel.check()?;
-            rated.push((share(merger, &direction), direction));
+            rated.extend(missed(merger, &direction).map(|missed| (missed, direction)));
         }
-        rated.retain(|r| r.0 >= SHARE);
         // Stable: equal ones stay in their order.
-        rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+        rated.sort_by_key(|r| r.0);
         let apart = APART[usize::from(self.across.is_none())].sin();
         let mut chosen: Vec<Vector> = Vec::new();
         for (_, direction) in rated {
@@ -75,18 +68,21 @@ impl Open {
     }
 }
 
-/// The share of some samples whose mirror image is near the surface.
-fn share(merger: &Merger, normal: &Vector) -> f64 {
+/// How many of some samples have no mirror image near the surface; `None` as soon as they are too many.
+fn missed(merger: &Merger, normal: &Vector) -> Option<usize> {
     let (field, measures) = (&merger.validated.field, &merger.parsed.measures);
     let plane = Plane::through(&measures.centroid, normal);
     let radius = measures.tolerance.length(RADIUS);
     let samples = field.samples(Round::Coarse);
-    let step = (samples.len() / SAMPLES).max(1);
-    let mut recent = Recent::default();
-    let mut near = |s: &&Sample| {
-        let (p, normal) = (plane.reflect(&s.point), plane.reflect_vector(&s.normal));
-        field.touches((&p, &normal), radius, &mut recent, |_| true)
-    };
-    let asked = samples.iter().step_by(step);
-    asked.clone().filter(|s| near(s)).count() as f64 / asked.count().max(1) as f64
+    let asked = samples.iter().step_by((samples.len() / SAMPLES).max(1));
+    let most = ((1.0 - SHARE) * asked.len() as f64) as usize;
+    let (mut missed, mut recent) = (0, Recent::default());
+    for sample in asked {
+        let (p, normal) = (plane.reflect(&sample.point), plane.reflect_vector(&sample.normal));
+        missed += usize::from(!field.touches((&p, &normal), radius, &mut recent, |_| true));
+        if missed > most {
+            return None;
+        }
+    }
+    Some(missed)
 }

@@ -29,9 +29,7 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
     let mut found: Vec<SymmetryPlane> = Vec::new();
     let axes = Axes::of(merger, field);
     let mut normals = axes.distinct.clone();
-    if let Some(open) = &axes.open
-        && !pool.iter().any(|p| p.coverage >= merger.options.near_global - 0.05 && open.has(&p.plane.normal))
-    {
+    if let Some(open) = &axes.open {
         normals.extend(open.promising(merger)?);
     }
     for normal in normals {
