@@ -9,7 +9,6 @@ use std::time::Duration;
 use super::line::Line;
 use super::run::run_with;
 use super::{Progress, Report, Request, Shard};
-use crate::alignment::Method;
 use crate::settings::Settings;
 use crate::stages::descriptor::{MAGNITUDES, PHASES};
 use crate::stages::merge::Label;
