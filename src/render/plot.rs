@@ -48,7 +48,8 @@ mod tests {
 
     #[test]
     fn a_curve_is_drawn_even_without_points() {
-        for (angles, areas) in [(&[][..], &[][..]), (&[0.0, 1.0], &[2.0, 3.0])] {
+        let curves: [(&[f64], &[f64]); 2] = [(&[], &[]), (&[0.0, 1.0], &[2.0, 3.0])];
+        for (angles, areas) in curves {
             assert!(area_curve(angles, areas, 0.0).unwrap().starts_with(b"\x89PNG"));
         }
     }
