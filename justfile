@@ -28,3 +28,8 @@ bench:
 # Shards on a Slurm of our own on the loopback address (as root, with slurm-wlm and munge installed).
 slurm:
     contrib/slurm/test.sh
+
+# Instructions of fixed models against their budget (valgrind).
+instructions:
+    cargo build --release
+    python3 benches/instructions.py
