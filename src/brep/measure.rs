@@ -1,7 +1,9 @@
 //! Area, volume, centroid and bounding box of a model.
 
-use super::{FreeCurve, Mesh, Model};
-use crate::geometry::{Aabb, Point, Tolerance, Vector};
+use std::f64::consts::PI;
+
+use super::{Curve, EdgeId, FreeCurve, Mesh, Model};
+use crate::geometry::{Aabb, Point, Tolerance, Transform, Vector};
 
 /// What a model measures, in its own pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,16 +20,69 @@ pub struct Measures {
     pub tolerance: Tolerance,
 }
 
-/// Measures a tessellated model. Area, centroid and volume come from the integrals over the true surfaces; the box
-/// and D from the points of the mesh. Without faces everything is 0 and the box is empty.
+/// Measures a tessellated model. Area, centroid and volume come from the integrals over the true surfaces; D from the
+/// points of the mesh, the box from them and from the circles and ellipses of edges. Without faces everything is 0 and the box is empty.
 pub fn measure(model: &Model, mesh: &Mesh) -> Measures {
     let area: f64 = mesh.faces.iter().map(|f| f.area).sum();
     let moment: Vector = mesh.faces.iter().map(|f| f.centroid.coords * f.area).sum();
     let centroid = if area > 0.0 { Point::from(moment / area) } else { Point::origin() };
     let farthest = mesh.points.iter().map(|p| (p - centroid).norm_squared()).fold(0.0, f64::max).sqrt();
     let mut bounds = Aabb::of(&mesh.points);
+    add_conics(&mut bounds, model, mesh);
     model.free_curves.iter().flat_map(points_of).for_each(|p| bounds.add(&p));
     Measures { area, volume: volume(model, mesh), centroid, bounds, tolerance: Tolerance::of(2.0 * farthest) }
+}
+
+/// Adds the points where circles and ellipses of edges reach beyond the box: chords fall short of them.
+fn add_conics(bounds: &mut Aabb, model: &Model, mesh: &Mesh) {
+    let arcs: Vec<Option<Arc>> = (0..model.edges.len()).map(|i| Arc::of(model, EdgeId(i as u32))).collect();
+    for face in &mesh.faces {
+        let placement = &model.occurrences[face.occurrence as usize].placement;
+        let edges = model.faces[face.face.index()].loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);
+        edges.filter_map(|e| arcs[e.index()].as_ref()).for_each(|arc| arc.placed(placement).add_to(bounds));
+    }
+}
+
+/// Part of an ellipse: centre + x cos t + y sin t, t from one end to the other.
+struct Arc {
+    centre: Point,
+    x: Vector,
+    y: Vector,
+    ends: [f64; 2],
+}
+
+impl Arc {
+    fn of(model: &Model, edge: EdgeId) -> Option<Self> {
+        let (placement, [a, b]) = match model.edges[edge.index()].curve.as_deref()? {
+            Curve::Circle { placement, radius } => (placement, [*radius, *radius]),
+            Curve::Ellipse { placement, semi_x, semi_y } => (placement, [*semi_x, *semi_y]),
+            _ => return None,
+        };
+        let [from, to] = model.edge_span(edge)?;
+        let ends = [from.min(to), from.max(to)];
+        Some(Self { centre: placement.origin, x: placement.x * a, y: placement.y * b, ends })
+    }
+
+    fn placed(&self, by: &Transform) -> Self {
+        Self { centre: by.point(&self.centre), x: by.linear * self.x, y: by.linear * self.y, ..*self }
+    }
+
+    /// Adds the points that are extreme along a coordinate axis, where the whole ellipse leaves the box at all.
+    fn add_to(&self, bounds: &mut Aabb) {
+        for axis in 0..3 {
+            let reach = self.x[axis].hypot(self.y[axis]);
+            let middle = self.centre[axis];
+            if middle - reach >= bounds.min[axis] && middle + reach <= bounds.max[axis] {
+                continue;
+            }
+            let extreme = self.y[axis].atan2(self.x[axis]);
+            let mut t = extreme + PI * ((self.ends[0] - extreme) / PI).ceil();
+            while t <= self.ends[1] {
+                bounds.add(&(self.centre + self.x * t.cos() + self.y * t.sin()));
+                t += PI;
+            }
+        }
+    }
 }
 
 /// Points of a free curve, near enough for its box.

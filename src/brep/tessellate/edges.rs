@@ -1,7 +1,5 @@
 //! Edges -> polylines in space, once for all faces that use them.
 
-use std::f64::consts::PI;
-
 use super::Options;
 use crate::brep::{Curve, EdgeId, Model, Surface};
 use crate::cancel::{Cancel, Cancelled};
@@ -102,13 +100,8 @@ impl EdgeLines {
         let period = curve.period();
         let at = |t: f64| curve.derivatives(curve.wrap(t, period));
         let parameters = match curve {
-            Curve::Circle { placement, radius } => {
-                conic_parameters(span, *radius, [placement.x * *radius, placement.y * *radius], fineness, least)
-            }
-            Curve::Ellipse { placement, semi_x, semi_y } => {
-                let axes = [placement.x * *semi_x, placement.y * *semi_y];
-                conic_parameters(span, semi_x.max(*semi_y), axes, fineness, least)
-            }
+            Curve::Circle { radius, .. } => conic_parameters(span, *radius, fineness, least),
+            Curve::Ellipse { semi_x, semi_y, .. } => conic_parameters(span, semi_x.max(*semi_y), fineness, least),
             _ => adaptive_parameters(curve, &at, span, period, fineness, least),
         };
         for pair in parameters.windows(2) {
@@ -141,35 +134,12 @@ pub(super) fn angular_step(radius: f64, fineness: &Fineness) -> f64 {
     fineness.angle.min(2.0 * (1.0 - share).acos()).max(2e-3)
 }
 
-/// Equal steps of the angle, and the angles where the conic is extreme along a coordinate axis, so that the box is
-/// exact; `axes`: the semi-axes as vectors.
-fn conic_parameters(span: [f64; 2], radius: f64, axes: [Vector; 2], fineness: &Fineness, least: usize) -> Vec<f64> {
+/// Equal steps of the angle: whatever the pose, the same points.
+fn conic_parameters(span: [f64; 2], radius: f64, fineness: &Fineness, least: usize) -> Vec<f64> {
     let width = span[1] - span[0];
     let count = ((width.abs() / angular_step(radius, fineness) - 1e-9).ceil() as usize).clamp(least, MAX_POINTS);
     let step = width / count as f64;
-    let mut parameters: Vec<f64> = (0..=count).map(|i| span[0] + step * i as f64).collect();
-    if count > 1 {
-        (0..3).for_each(|axis| add_extremes(&mut parameters, span, step, axes[1][axis].atan2(axes[0][axis])));
-        parameters.sort_by(|a, b| (a * step).total_cmp(&(b * step)));
-    }
-    parameters
-}
-
-/// Moves the nearest inner parameter to each of `angle + k pi`, or adds it where that would move one by far.
-fn add_extremes(parameters: &mut Vec<f64>, [from, to]: [f64; 2], step: f64, angle: f64) {
-    let (low, high) = (from.min(to), from.max(to));
-    let mut t = angle + PI * ((low - angle) / PI).ceil();
-    while t < high {
-        let clear = 1e-6 * step.abs();
-        let nearest =
-            (1..parameters.len() - 1).min_by(|&a, &b| (parameters[a] - t).abs().total_cmp(&(parameters[b] - t).abs()));
-        match nearest {
-            _ if t - low <= clear || high - t <= clear => {}
-            Some(i) if (parameters[i] - t).abs() <= 0.25 * step.abs() => parameters[i] = t,
-            _ => parameters.push(t),
-        }
-        t += PI;
-    }
+    (0..=count).map(|i| span[0] + step * i as f64).collect()
 }
 
 /// Halves the pieces between the curve's breaks until chord and tangents are near enough.
