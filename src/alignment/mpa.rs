@@ -51,7 +51,7 @@ pub fn axes(mesh: &Mesh, shadows: &Shadows, cancel: &Cancel) -> Result<[Vector; 
         // Somewhere fixed to the model.
         let start = across(pole, &poles);
         let mut circle = Circle::new(shadows, pole, &start, SLICES.0)?;
-        seen.extend(circle.minima(&steps(0.0, PI), TAKEN)?);
+        seen.extend(circle.minima(&steps(0.0, PI - STEP), TAKEN)?);
     }
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut starts: Vec<Seen> = Vec::new();
@@ -69,7 +69,7 @@ pub fn axes(mesh: &Mesh, shadows: &Shadows, cancel: &Cancel) -> Result<[Vector; 
     }
     let Some((_, first)) = best else { return Ok(cpca::axes(mesh)) };
     let mut circle = Circle::new(shadows, &first, &across(&first, &poles), SLICES.1)?;
-    let second = circle.minima(&steps(0.0, PI), 1)?.first().map_or_else(|| any_perpendicular(&first), |s| s.1);
+    let second = circle.minima(&steps(0.0, PI - STEP), 1)?.first().map_or_else(|| any_perpendicular(&first), |s| s.1);
     Ok([first, second, first.cross(&second)])
 }
 
@@ -137,10 +137,14 @@ impl<'a> Circle<'a> {
     /// The lowest local minima at the given angles, each closed in on between its neighbours.
     fn minima(&mut self, angles: &[f64], most: usize) -> Result<Vec<Seen>, Cancelled> {
         let areas = (self.sweep)(angles)?;
-        let lower = |k: usize, other: Option<&f64>| other.is_none_or(|area| areas[k] <= *area);
-        let mut low: Vec<_> = (0..areas.len())
-            .filter(|&k| lower(k, areas.get(k + 1)) && lower(k, k.checked_sub(1).map(|before| &areas[before])))
-            .collect();
+        // After half a turn the shadows repeat: there the first and the last are neighbours.
+        let around = angles.len() as f64 * STEP > PI - 0.5 * STEP;
+        let count = areas.len();
+        let lower = |k: usize, ahead: usize| {
+            let other = (k + count + ahead - 1) % count;
+            (!around && k.abs_diff(other) > 1) || areas[k] <= areas[other]
+        };
+        let mut low: Vec<_> = (0..count).filter(|&k| lower(k, 0) && lower(k, 2)).collect();
         low.sort_by(|&a, &b| areas[a].total_cmp(&areas[b]));
         let closed_in = |&k: &usize| {
             let angle = self.golden_section(angles[k])?;

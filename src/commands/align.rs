@@ -79,12 +79,21 @@ fn format_of(path: &Path) -> Result<Format> {
 fn publish(path: &Path, write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut written = || {
-        let mut out = io::BufWriter::new(tempfile::NamedTempFile::new_in(folder)?);
+        let mut out = io::BufWriter::new(draft_in(folder)?);
         write(&mut out)?;
         let draft = out.into_inner().map_err(|e| e.into_error())?;
+        draft.as_file().sync_all()?;
         draft.persist(path).map_err(|e| e.error)
     };
     written().map(drop).map_err(|e| RunError::file(path, e))
+}
+
+/// A draft that others may read as they may read any new file; a temporary file is for its owner alone.
+fn draft_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }
 
 #[cfg(test)]

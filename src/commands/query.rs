@@ -23,6 +23,9 @@ pub fn query(args: &Query) -> Result<Exit> {
     let rows = Rows::of(&store, name)?;
     // The model is not moved: no descriptor depends on its pose.
     let settings = Settings { methods: vec![name.frame], random_pose: None, ..Settings::of_store(store.settings())? };
+    if args.out.is_some() && args.model.len() > 1 {
+        return Err(RunError::Usage(format!("a page shows the hits of one model, there are {}", args.model.len())));
+    }
     let (asked, failed) = described(args, &settings)?;
     let descriptors: Vec<_> = asked.iter().map(|(_, record)| descriptor(record, name)).collect();
     let found = rows.nearest_to_each(&descriptors, args.k)?;

@@ -19,9 +19,10 @@ pub fn symmetries(args: &Symmetries) -> Result<Exit> {
     let mut each = |inspection: Inspection| {
         let model = &inspection.model;
         match inspection.result {
-            Ok(described) => objects.push((model.clone(), object(model, &described, &settings)?)),
+            Ok(described) => objects.push((model.clone(), Some(object(model, &described, &settings)?))),
             Err(error) => {
                 eprintln!("symalign: {model}: {error}");
+                objects.push((model.clone(), None));
                 failed = true;
             }
         }
@@ -50,10 +51,12 @@ fn object(model: &str, described: &Described, settings: &Settings) -> Result<Val
     Ok(bop::object(model, parsed, symmetries, &found, options.exact))
 }
 
-/// One JSON object with an object a line.
-fn lines(objects: &[(String, Value)]) -> String {
-    let line = |(number, (_, object)): (u64, &(String, Value))| format!("\"{number}\": {object}");
-    let lines: Vec<_> = numbers(objects).into_iter().zip(objects).map(line).collect();
+/// One JSON object with an object a line. Models that were lost keep their numbers and have no line.
+fn lines(objects: &[(String, Option<Value>)]) -> String {
+    let line = |(number, (_, object)): (u64, &(String, Option<Value>))| {
+        object.as_ref().map(|object| format!("\"{number}\": {object}"))
+    };
+    let lines: Vec<_> = numbers(objects).into_iter().zip(objects).filter_map(line).collect();
     if lines.is_empty() { "{}\n".to_owned() } else { format!("{{\n{}\n}}\n", lines.join(",\n")) }
 }
 
@@ -77,8 +80,13 @@ mod tests {
 
     #[test]
     fn every_object_has_its_line() {
-        let objects = [("a".to_owned(), serde_json::json!({"x": 1})), ("b".to_owned(), serde_json::json!({}))];
-        assert_eq!(lines(&objects), "{\n\"1\": {\"x\":1},\n\"2\": {}\n}\n");
+        let object = |name: &str, value: Option<Value>| (name.to_owned(), value);
+        let objects = [
+            object("a", Some(serde_json::json!({"x": 1}))),
+            object("lost", None),
+            object("b", Some(serde_json::json!({}))),
+        ];
+        assert_eq!(lines(&objects), "{\n\"1\": {\"x\":1},\n\"3\": {}\n}\n");
         assert_eq!(lines(&[]), "{}\n");
     }
 

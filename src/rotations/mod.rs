@@ -158,17 +158,22 @@ fn turn(direction: &Vector, angle: f64) -> Matrix {
     *nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(*direction), angle).matrix()
 }
 
-/// What rotations are sorted by: the angle in millionths of a radian, then the axis.
-fn in_order(rotation: &Matrix) -> (i64, [f64; 3]) {
+/// What rotations are sorted by: the angle in steps of 1e-4 radians, then the axis.
+fn in_order(rotation: &Matrix) -> (i64, [f64; 9]) {
     let cosine = (0.5 * (rotation.trace() - 1.0)).clamp(-1.0, 1.0);
     let axis = Vector::new(
         rotation[(2, 1)] - rotation[(1, 2)],
         rotation[(0, 2)] - rotation[(2, 0)],
         rotation[(1, 0)] - rotation[(0, 1)],
     );
-    // Half turns have no axis of this kind: there the columns decide.
-    let lead = if axis.norm() > 1e-3 { axis.normalize() } else { rotation.diagonal() };
-    ((cosine.acos() * 1e4).round() as i64, [lead.x, lead.y, lead.z].map(|c| (c * 1e6).round()))
+    let mut lead = [0.0; 9];
+    // Half turns have no axis of this kind: there all entries decide.
+    if axis.norm() > 1e-3 {
+        lead[..3].copy_from_slice(axis.normalize().as_slice());
+    } else {
+        lead.copy_from_slice(rotation.as_slice());
+    }
+    ((cosine.acos() * 1e4).round() as i64, lead.map(|c| (c * 1e6).round()))
 }
 
 #[cfg(test)]

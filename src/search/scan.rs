@@ -186,6 +186,8 @@ impl<T> Blocks<'_, T> {
         let (length, width) = (T::LENGTH, Q * S::F32_LANES);
         let turned = turned::<S>(simd, self.queries, length, width);
         let mut limits = vec![simd.splat_f32s(f32::INFINITY); self.queries.len().div_ceil(width) * Q];
+        // Lanes without a query are near to nothing.
+        bytemuck::cast_slice_mut::<_, f32>(&mut limits)[self.queries.len()..].fill(f32::NEG_INFINITY);
         let rows = self.rows.values;
         for (block, values) in rows.chunks(block_rows(length) * length).enumerate() {
             let first = self.first + block * block_rows(length);

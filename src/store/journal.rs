@@ -243,8 +243,11 @@ impl Journal {
                     let end = at + (HEAD + payload.len()) as u64;
                     self.note_damage("records", at);
                     if kind == SETTINGS && payload.len() >= 4 && made.is_none() {
-                        let settings = String::from_utf8(payload[4..].to_vec());
-                        made = settings.ok().map(|settings| (u32_at(&payload, 0), settings));
+                        // Records of the first version began with the text itself.
+                        let version = u32_at(&payload, 0);
+                        let (version, text) = if version > 1000 { (1, 0) } else { (version, 4) };
+                        let settings = String::from_utf8(payload[text..].to_vec());
+                        made = settings.ok().map(|settings| (version, settings));
                     } else if kind == MODEL && payload.len() >= KEY {
                         self.remember(at, &payload);
                     }

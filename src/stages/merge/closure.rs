@@ -39,8 +39,11 @@ fn implied(
     if index.find(&image).is_some() {
         return None;
     }
-    index.add(image);
     let coverage = merger.validated.field.reaches(&image.reflection(), EXACT)?;
-    pool.push(SymmetryPlane { source: Source::Principal, ..super::principal::candidate(image, coverage, 0.0) });
+    index.add(image);
+    // An image is off by what both planes are.
+    let residual = |plane: &Plane| pool.iter().find(|p| p.plane == *plane).map_or(0.0, |p| p.residual);
+    let residual = residual(plane) + residual(mirror);
+    pool.push(SymmetryPlane { source: Source::Principal, ..super::principal::candidate(image, coverage, residual) });
     Some(image)
 }
