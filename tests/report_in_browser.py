@@ -2,15 +2,17 @@
 """Opens a report in headless Chromium and uses it: python3 tests/report_in_browser.py REPORT.html [--shots DIR]
 
 Needs chromium and chromedriver (Debian: chromium chromium-driver) and nothing else: it speaks WebDriver by itself.
-Exit code 0: all that was tried works; 1: something does not, which is said; 77: there is no Chromium.
+Exit code 0: all that was tried works; 1: something does not, which is said; 77: there is no Chromium that starts.
 """
 
 import argparse
 import base64
 import contextlib
 import json
+import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -21,9 +23,15 @@ import urllib.request
 
 FLAGS = [
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--hide-scrollbars",
+    "--disable-component-update", "--disable-dev-shm-usage", "--disable-sync", "--hide-scrollbars",
 ]
 SECONDS = 120
+# No proxy, whatever the environment says.
+OPENER = urllib.request.build_opener(urllib.request.ProxyHandler({}))
+
+
+class NoSession(Exception):
+    """Chromium or its driver does not start."""
 
 
 class Browser:
@@ -36,11 +44,11 @@ class Browser:
         session = self.call("POST", "/session", {"capabilities": {"alwaysMatch": wanted}})
         self.session = f"/session/{session['sessionId']}"
 
-    def call(self, method, path, body=None):
+    def call(self, method, path, body=None, seconds=SECONDS):
         data = None if body is None else json.dumps(body).encode()
         request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
         try:
-            with urllib.request.urlopen(request, timeout=SECONDS) as answer:
+            with OPENER.open(request, timeout=seconds) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"].split("\n")[0]) from None
@@ -71,7 +79,7 @@ class Browser:
         path.write_bytes(base64.b64decode(self.post("/print", background=True)))
 
     def close(self):
-        self.call("DELETE", self.session)
+        self.call("DELETE", self.session, seconds=10)
 
 
 @contextlib.contextmanager
@@ -79,17 +87,26 @@ def browser():
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    with tempfile.TemporaryDirectory() as profile:
-        driver = subprocess.Popen(["chromedriver", f"--port={port}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        driver = subprocess.Popen(["chromedriver", f"--port={port}"], start_new_session=True, **quiet)
         try:
-            wait_for(port)
-            session = Browser(port, profile)
+            try:
+                wait_for(port)
+                session = Browser(port, profile)
+            except (OSError, RuntimeError) as error:
+                raise NoSession(error) from error
             try:
                 yield session
             finally:
-                session.close()
+                with contextlib.suppress(OSError, RuntimeError):
+                    session.close()
         finally:
             driver.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                driver.wait(10)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(driver.pid, signal.SIGKILL)
             driver.wait()
 
 
@@ -299,11 +316,16 @@ def main():
     if not shutil.which("chromium") or not shutil.which("chromedriver"):
         print("skipped: there is no chromium with its chromedriver")
         return 77
-    page = args.report.resolve()
-    with browser() as session:
-        wrong, pictures = check(session, page)
-        if args.shots:
-            shots(session, page, args.shots)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the browser ends too
+    page = args.report.resolve(strict=True)
+    try:
+        with browser() as session:
+            wrong, pictures = check(session, page)
+            if args.shots:
+                shots(session, page, args.shots)
+    except NoSession as error:
+        print(f"skipped: Chromium does not start: {error}")
+        return 77
     for text in wrong:
         print(f"{args.report}: {text}")
     if not wrong:

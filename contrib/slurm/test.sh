@@ -14,38 +14,37 @@ one=${2:+$(realpath "$2")}
 export SYMALIGN
 SYMALIGN=$(realpath "${SYMALIGN:-$here/../../target/release/symalign}")
 export PATH=$PATH:/usr/sbin
-for program in munged slurmctld slurmd sbatch; do
+for program in munged slurmctld slurmd sbatch python3; do
     command -v $program >/dev/null || { echo "skipped: $program is not installed"; exit 77; }
 done
 [ "$(id -u)" = 0 ] || { echo "skipped: slurmd wants root"; exit 77; }
 
 work=$(mktemp -d)
 cd "$work"
-daemons=()
+export SLURM_CONF=$work/slurm.conf
 say() { printf '%(%T)T  %s\n' -1 "$*"; }
 
-# Processes of jobs on a node of ours: what the node's name and our configuration stand in the environment of.
+# The environments that our configuration stands in: daemons, jobs and what runs these.
+environments() { grep -lzxF -e "SLURM_CONF=$SLURM_CONF" /proc/[0-9]*/environ 2>/dev/null || true; }
+# Processes of jobs on a node of ours.
 processes_on() {
-    local of
-    for of in /proc/[0-9]*; do
-        if { tr '\0' '\n' <"$of/environ"; } 2>/dev/null | grep -cxF -e "SLURMD_NODENAME=$1" -e "SLURM_CONF=$SLURM_CONF" |
-            grep -qx 2; then
-            basename "$of"
-        fi
-    done
+    environments | { xargs -r grep -lzxF -e "SLURMD_NODENAME=$1" 2>/dev/null || true; } | cut -d/ -f3
 }
 
 finish() {
-    local code=$? node
+    local code=$?
     [ $code = 0 ] || { say "failed ($code)"; tail -n 20 ./*.log slurm-*.out 2>/dev/null || true; }
-    for node in n1 n2; do
-        processes_on $node | xargs -r kill -9 2>/dev/null || true
+    kill $(jobs -pr) 2>/dev/null || true
+    for _ in {1..100}; do
+        [ -n "$(jobs -pr)" ] || break
+        sleep 0.1
     done
-    kill "${daemons[@]}" 2>/dev/null || true
+    kill -9 $(environments | cut -d/ -f3) 2>/dev/null || true
     wait 2>/dev/null || true
     rm -rf "$work"
 }
 trap finish EXIT
+trap 'exit 143' TERM
 
 # Waits until a command succeeds.
 until_true() {
@@ -60,18 +59,21 @@ until_true() {
 start_node() {
     slurmd -D -N "$1" >>"$1.out" 2>&1 &
     node_pid[$1]=$!
-    daemons+=($!)
 }
 
 configure() {
+    local port port1 port2
+    read -r port port1 port2 < <(python3 -c '
+import socket
+free = [socket.create_server(("127.0.0.1", 0)) for _ in range(3)]
+print(*(one.getsockname()[1] for one in free))')
     mkdir state spool
     head -c 1024 /dev/urandom >munge.key
     chmod 600 munge.key
-    export SLURM_CONF=$work/slurm.conf
-    cat >slurm.conf <<CONF
+    cat >"$SLURM_CONF" <<CONF
 ClusterName=loopback
 SlurmctldHost=$(hostname -s)(127.0.0.1)
-SlurmctldPort=16817
+SlurmctldPort=$port
 CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
 SlurmUser=root
 SlurmdUser=root
@@ -94,8 +96,8 @@ ReturnToService=2
 SlurmdTimeout=60
 BatchStartTimeout=1
 SlurmdParameters=config_overrides
-NodeName=n1 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=16821 CPUs=1 RealMemory=2000
-NodeName=n2 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=16822 CPUs=1 RealMemory=2000
+NodeName=n1 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=$port1 CPUs=1 RealMemory=2000
+NodeName=n2 NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 Port=$port2 CPUs=1 RealMemory=2000
 PartitionName=all Nodes=n1,n2 Default=YES MaxTime=INFINITE DefMemPerNode=1000
 CONF
 }
@@ -103,33 +105,37 @@ CONF
 start_daemons() {
     munged --foreground --force --socket=munge.socket --key-file=munge.key --pid-file=munge.pid --seed-file=munge.seed \
         --log-file=munge.log >munge.out 2>&1 &
-    daemons+=($!)
     until_true "munge" sh -c 'munge -n --socket=munge.socket | unmunge --socket=munge.socket'
     slurmctld -D >slurmctld.out 2>&1 &
-    daemons+=($!)
     start_node n1
     start_node n2
     until_true "two idle nodes" sh -c 'test "$(sinfo -h -N -t idle -o %N | sort -u | wc -l)" = 2'
 }
 
-# The shard that the node works on, and whether it has committed a few models and has more to do.
-shard_on() { squeue -h -w "$1" -t running -n symalign -o %K; }
-in_the_middle() {
-    local shard
-    shard=$(shard_on "$1") && [ -n "$shard" ] && [ "$(models_of "$shard")" -ge 2 ] &&
-        [ ! -e "store.shards/$shard/models.symalign" ]
+# Whether a shard has committed a few models and has more to do.
+in_the_middle() { [ "$(models_of "$1")" -ge 2 ] && [ ! -e "store.shards/$1/models.symalign" ]; }
+# Stops the processes of a node, `programs` of ours and `others`, in the middle of a `shard` other than $2.
+stop_in_the_middle() {
+    shard=$(squeue -h -w "$1" -t running -n symalign -o %K)
+    [ -n "$shard" ] && [ "$shard" != "${2:-}" ] && in_the_middle "$shard" || return
+    stopped=$(processes_on "$1")
+    programs=$(for pid in $stopped; do ! grep -qs symalign "/proc/$pid/comm" || echo "$pid"; done)
+    others=$(comm -23 <(sort <<<"$stopped") <(sort <<<"$programs"))
+    [ -n "$programs" ] && [ -n "$others" ] && kill -STOP $stopped || return
+    sleep 0.1 # what the kernel is at goes on
+    in_the_middle "$shard" || { kill -CONT $stopped; return 1; }
 }
-next_in_the_middle() { [ "$(shard_on "$1")" != "$2" ] && in_the_middle "$1"; }
 models_of() { grep -c '"event":"model"' "store.shards/$1.jsonl"; }
 starts_of() { grep -c '"event":"run_start"' "store.shards/$1.jsonl"; }
 
-# A node dies with all that runs on it.
+# A node dies with all that runs on it, which is stopped.
 crash() {
-    local pids parents
-    pids=$(processes_on "$1")
-    parents=$(for pid in $pids; do ps -o ppid= -p "$pid"; done | sort -u |
-        while read -r pid; do grep -qs slurmstepd "/proc/$pid/comm" && echo "$pid"; done || true)
-    kill -9 "${node_pid[$1]}" $parents $pids 2>/dev/null || true
+    local parents
+    parents=$(for pid in $stopped; do sed -n 's/^PPid:\s*//p' "/proc/$pid/status"; done | sort -u |
+        while read -r pid; do ! grep -qs slurmstepd "/proc/$pid/comm" || echo "$pid"; done)
+    [ -n "$parents" ] || { say "no slurmstepd on $1"; exit 1; }
+    kill -STOP "${node_pid[$1]}" $parents # or they tell of the end of the others
+    kill -9 $stopped $parents "${node_pid[$1]}"
     { wait "${node_pid[$1]}" || true; } 2>/dev/null
 }
 
@@ -144,21 +150,23 @@ fi
 say "one machine: $("$SYMALIGN" store info "$one" | head -n 1)"
 
 say "$("$here/submit.sh" 4 store "$input")"
-until_true "a task in the middle on n2" in_the_middle n2
-crashed=$(shard_on n2)
+until_true "a task in the middle on n2" stop_in_the_middle n2
+crashed=$shard
 say "shard $crashed has $(models_of "$crashed") models; its node n2 crashes"
 crash n2
 back=$((SECONDS + 13)) # before BatchStartTimeout + MessageTimeout, Slurm takes a job that it misses for one that starts
-until_true "a task in the middle on n1" in_the_middle n1
-killed=$(shard_on n1)
+until_true "a task in the middle on n1" stop_in_the_middle n1
+killed=$shard
 say "shard $killed has $(models_of "$killed") models; its process on n1 is killed"
-for pid in $(processes_on n1); do
-    ! grep -qs symalign "/proc/$pid/comm" || kill -9 "$pid"
-done
-until_true "the next task in the middle on n1" next_in_the_middle n1 "$killed"
-late=$(shard_on n1)
+kill -9 $programs
+kill -CONT $others
+until_true "the next task in the middle on n1" stop_in_the_middle n1 "$killed"
+late=$shard
 say "shard $late has $(models_of "$late") models; its time is up"
 scancel --batch --signal=USR1 "$(squeue -h -w n1 -t running -o %A)"
+kill -CONT $others # they send the SIGTERM, the 15th bit, before the program goes on
+until_true "a SIGTERM" grep -q '^ShdPnd:.*[4-7c-f]...$' $(printf '/proc/%s/status ' $programs)
+kill -CONT $programs
 sleep $((back > SECONDS ? back - SECONDS : 0))
 say "n2 is back"
 start_node n2
