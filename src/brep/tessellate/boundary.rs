@@ -299,9 +299,15 @@ fn unwrap(chart: &Chart, points: &[Point], mapped: &[Mapped], flipped: bool) -> 
 }
 
 fn push(path: &mut Path, point: Point, uv: Uv, middle: Uv) {
+    let uv = path.uv.last().map_or(uv, |last| straightened(uv, *last));
     path.points.push(point);
     path.uv.push(uv);
-    path.middles.push(middle);
+    path.middles.push(straightened(middle, uv));
+}
+
+/// A border along u or v stays one: where rounding bends it, slivers between its points would be cut off.
+fn straightened(uv: Uv, last: Uv) -> Uv {
+    [0, 1].map(|i| if (uv[i] - last[i]).abs() <= 1e-12 * uv[i].abs().max(1.0) { last[i] } else { uv[i] })
 }
 
 /// The two ends of the way along a pole: from `last` into it and out to `out`. With the face on the left, the way

@@ -1,5 +1,7 @@
 //! Edges -> polylines in space, once for all faces that use them.
 
+use std::f64::consts::TAU;
+
 use super::Options;
 use crate::brep::{Curve, EdgeId, Model, Surface};
 use crate::cancel::{Cancel, Cancelled};
@@ -134,10 +136,12 @@ pub(super) fn angular_step(radius: f64, fineness: &Fineness) -> f64 {
     fineness.angle.min(2.0 * (1.0 - share).acos()).max(2e-3)
 }
 
-/// Equal steps of the angle: whatever the pose, the same points.
+/// Equal steps of the angle: whatever the pose, the same points. A whole turn is cut into quarters, so that it stays its
+/// own mirror image.
 fn conic_parameters(span: [f64; 2], radius: f64, fineness: &Fineness, least: usize) -> Vec<f64> {
     let width = span[1] - span[0];
     let count = ((width.abs() / angular_step(radius, fineness) - 1e-9).ceil() as usize).clamp(least, MAX_POINTS);
+    let count = if width.abs() > TAU - 1e-9 { count.next_multiple_of(4) } else { count };
     let step = width / count as f64;
     (0..=count).map(|i| span[0] + step * i as f64).collect()
 }

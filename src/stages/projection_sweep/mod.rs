@@ -11,6 +11,7 @@
 //! Cost: one cut of the mesh serves all angles, a few milliseconds for ten thousand triangles.
 //! It does not promise a meaningful second axis for axisymmetric shadows: those are flagged and get a convention.
 
+mod cover;
 mod curve;
 mod pixels;
 mod reference;

@@ -14,6 +14,7 @@ use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
 use crate::stages::parse::Parsed;
 
+use super::cover::{Cover, doubled_area};
 use super::curve::Shadows;
 use super::reference::Turntable;
 
@@ -21,7 +22,7 @@ use super::reference::Turntable;
 const CROSSINGS: usize = 1 << 20;
 
 /// A point of a cut: (along u, along v) of the turntable, mm.
-type Flat = [f64; 2];
+pub(super) type Flat = [f64; 2];
 
 /// The convex hulls of the pieces of every slice.
 pub struct Slices {
@@ -96,6 +97,22 @@ struct Walker {
 }
 
 impl Slice {
+    /// Drops the hulls inside the largest one, whose shadows are parts of its own: a plate with ten thousand holes
+    /// casts the shadow of a plate.
+    fn drop_covered(&mut self) {
+        let area = |hull: &Range<usize>| doubled_area(&self.points[hull.clone()]);
+        let largest = self.hulls.iter().map(|hull| (area(hull), hull)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, largest)) = largest.filter(|(area, _)| *area > 0.0 && self.hulls.len() > 1) else { return };
+        let cover = Cover::of(&self.points[largest.clone()]);
+        let mut kept = Self::default();
+        for hull in self.hulls.iter().filter(|h| *h == largest || !cover.holds(&self.points[(*h).clone()])) {
+            let start = kept.points.len();
+            kept.points.extend_from_slice(&self.points[hull.clone()]);
+            kept.hulls.push(start..kept.points.len());
+        }
+        *self = kept;
+    }
+
     /// Stands at the extreme points of every hull in a direction.
     fn start(&self, direction: Flat, walkers: &mut Vec<Walker>) {
         let along = |i: &usize| dot(self.points[*i], direction);
@@ -216,6 +233,7 @@ impl Wire {
             slice.hulls.push(start..slice.points.len());
             from = end;
         }
+        slices.iter_mut().for_each(Slice::drop_covered);
         slices
     }
 

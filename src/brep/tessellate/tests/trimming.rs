@@ -106,7 +106,7 @@ fn a_belt_of_a_sphere_lies_between_two_circles() {
 #[test]
 fn half_a_torus_lies_between_circles_round_its_tube() {
     let mut b = Builder::new();
-    let (v0, v1) = (b.vertex(7.0, 0.0, 0.0), b.vertex(-3.0, 0.0, 0.0));
+    let (v0, v1) = (b.vertex(7.0, 0.0, 0.0), b.vertex(-7.0, 0.0, 0.0));
     let first = b.edge(v0, v0, Some(upright(5.0, 0.0, 2.0)));
     let last = b.edge(v1, v1, Some(upright(-5.0, 0.0, 2.0)));
     let torus = Surface::Torus { placement: at_height(0.0), major: 5.0, minor: 2.0 };
