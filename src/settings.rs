@@ -201,6 +201,12 @@ impl Settings {
             ("limits.triangles", self.limits.triangles > 0),
             ("limits.seconds", self.limits.seconds > 0.0),
             ("limits.expansion", self.limits.expansion > 0),
+            ("validate.samples", self.validate.samples > 0),
+            ("projection_sweep.planes", self.projection_sweep.planes > 0),
+            ("projection_sweep.slices", self.projection_sweep.slices > 0),
+            ("projection_sweep.pixels", self.projection_sweep.pixels > 0),
+            ("descriptor.side", self.descriptor.side > 0),
+            ("descriptor.points", self.descriptor.points > 0),
             ("every key of workers", self.workers.values().all(|n| *n > 0)),
             ("every key of queues", self.queues.values().all(|n| *n > 0)),
         ];

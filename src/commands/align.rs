@@ -28,7 +28,7 @@ pub fn align(args: &Align) -> Result<Exit> {
     let mut settings = super::settings(args.config.as_deref(), None)?;
     settings.methods = vec![args.method];
     settings.random_pose = None;
-    let (model, bytes) = inspect::first(&args.model, &settings)?;
+    let (model, bytes) = inspect::only(&args.model, &settings)?;
     let aligned = bytes.and_then(|bytes| {
         let described = pipeline::describe(&model, bytes.clone(), &settings).0?;
         let pose = pose(&described);

@@ -26,30 +26,44 @@ pub struct Inspection {
 ///
 /// `archive.zip!folder/part.step` names a single member.
 ///
-/// Errors: there is no such file.
+/// A path without a model, or that cannot be read, counts as a model that was lost.
+///
+/// Errors: those of `each`.
 pub fn inspect(path: &Path, settings: &Settings, each: &mut dyn FnMut(Inspection) -> Result<()>) -> Result<()> {
-    let mut state = Ok(());
-    visit(path, settings, &mut |model, bytes| {
+    let (mut state, mut count) = (Ok(()), 0);
+    let visited = visit(path, settings, &mut |model, bytes| {
+        count += 1;
         let (result, seconds) = match bytes {
             Ok(bytes) => describe(&model, bytes, settings),
             Err(error) => (Err(error), Seconds::default()),
         };
         state = each(Inspection { model, result, seconds });
         if state.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    })?;
-    state
+    });
+    state?;
+    let why = match visited {
+        Err(error) => error.to_string(),
+        Ok(()) if count == 0 => format!("{}: no model in it", path.display()),
+        Ok(()) => return Ok(()),
+    };
+    let model = path.display().to_string();
+    each(Inspection { model, result: Err(ModelError::new(Stage::Parse, why)), seconds: Seconds::default() })
 }
 
-/// The name and the bytes of the first model at `path`.
+/// The name and the bytes of the one model at `path`.
 ///
-/// Errors: there is no such file, or no model in it.
-pub fn first(path: &Path, settings: &Settings) -> Result<(String, std::result::Result<Vec<u8>, ModelError>)> {
-    let mut first = None;
+/// Errors: there is no such file, no model in it, or more than one.
+pub fn only(path: &Path, settings: &Settings) -> Result<(String, std::result::Result<Vec<u8>, ModelError>)> {
+    let mut found = Vec::new();
     visit(path, settings, &mut |model, bytes| {
-        first = Some((model, bytes));
-        ControlFlow::Break(())
+        found.push((model, bytes));
+        if found.len() > 1 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
-    first.ok_or_else(|| RunError::Usage(format!("{}: no model in it", path.display())))
+    match found.len() {
+        1 => Ok(found.swap_remove(0)),
+        0 => Err(RunError::Usage(format!("{}: no model in it", path.display()))),
+        _ => Err(RunError::Usage(format!("{}: more than one model in it; name one of them", path.display()))),
+    }
 }
 
 /// What is done with a model's name and bytes.

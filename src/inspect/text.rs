@@ -71,7 +71,7 @@ fn shortened(mut lines: Vec<String>) -> Vec<String> {
 }
 
 fn symmetry_lines(symmetries: &Symmetries) -> Vec<String> {
-    let mut lines = vec![format!("symmetry: {}", format!("{:?}", symmetries.label).to_lowercase())];
+    let mut lines = vec![format!("symmetry: {}", symmetries.label.name())];
     lines.extend(symmetries.planes.iter().take(PLANES).map(plane_line));
     let more = symmetries.planes.len().saturating_sub(PLANES);
     if more > 0 {

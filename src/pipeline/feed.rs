@@ -57,6 +57,13 @@ pub struct Manifest {
     pub complete: bool,
 }
 
+impl Manifest {
+    /// All inputs were read and held nothing.
+    pub fn is_empty(&self) -> bool {
+        self.complete && self.models.is_empty() && self.unreadable.is_empty()
+    }
+}
+
 /// Reads the inputs and sends what has to be computed.
 pub struct Feed<'a> {
     pub settings: &'a Settings,

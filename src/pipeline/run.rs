@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::io;
+use std::path::Path;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -20,7 +21,7 @@ use super::worker::Bench;
 use crate::error::{Result, RunError};
 use crate::settings::Settings;
 use crate::store::journal::Journal;
-use crate::store::{Contents, Failure, Hash, ModelRecord, publish};
+use crate::store::{Contents, Failure, Hash, ModelRecord, Store, publish};
 
 /// Outcomes that may wait for the disk, and how long: what a power cut can cost.
 const GROUP: usize = 64;
@@ -71,18 +72,32 @@ pub fn run_with(request: &Request, progress: &mut Progress, build: &Build) -> Re
     log::started(request, &effective);
     let mut collector = Collector::new(&mut opened.journal);
     let manifest = stream(request, progress, build, &mut collector)?;
+    if manifest.is_empty() && request.shard.is_none() {
+        let why = "no model in the input (files named .step .stp .p21 .igs .iges .brep, archives of them); the store is as it was";
+        return Err(RunError::Usage(why.into()));
+    }
     let mut report = std::mem::take(&mut collector.report);
     report.notes.append(&mut opened.notes);
     report.interrupted = !manifest.complete;
     manifest.unreadable.iter().for_each(log::unreadable);
     settle(&manifest, &opened.journal, &mut report)?;
     if manifest.complete {
+        report.notes.extend(no_longer_listed(&settings.store, &manifest));
         publish_all(settings, &effective, manifest, &opened.journal, &report.failures)?;
     }
     report.peak_memory = peak_memory();
     report.elapsed = started.elapsed();
     log::ended(&report);
     Ok(report)
+}
+
+/// A store lists the models of its last input: what that costs is said, for a wrong path must not empty it in silence.
+fn no_longer_listed(store: &Path, manifest: &Manifest) -> Option<String> {
+    let published = Store::open(store).ok()?;
+    let ids: HashSet<&str> = manifest.models.iter().map(|(id, _)| id.as_str()).collect();
+    let gone = (0..published.len()).filter(|&i| !ids.contains(published.id(i))).count();
+    let why = "are not in this input and no longer listed; what was computed is kept in the journal";
+    (gone > 0).then(|| format!("{gone} models of the store {why}"))
 }
 
 /// Sets up all threads, and collects on this one until the last parcel has come out.

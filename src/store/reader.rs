@@ -32,6 +32,20 @@ pub struct Store {
     settings: String,
 }
 
+fn is_missing(error: &std::io::Error) -> bool {
+    error.kind() == std::io::ErrorKind::NotFound
+}
+
+/// There is no published file: what to do about it.
+fn missing(dir: &Path) -> RunError {
+    let why = if super::journal_path(dir).exists() {
+        "is not finished: what was computed is in its journal; run the same command again to finish and publish it"
+    } else {
+        "is no store: `symalign run FOLDER --store DIR` makes one, --store names another"
+    };
+    RunError::Store { path: dir.into(), why: why.into() }
+}
+
 impl Store {
     /// Maps the published file of the store folder `dir` and checks its head, ids, hashes, failures and settings, of
     /// which there are two copies each. A section of rows is checked when it is first asked for, so that damage is an
@@ -40,7 +54,8 @@ impl Store {
     /// Errors: no such file, both copies damaged (with the section), or a format version this program does not read.
     pub fn open(dir: &Path) -> Result<Self> {
         let path = super::published_path(dir);
-        let file = File::open(&path).map_err(|e| RunError::file(&path, e))?;
+        let file =
+            File::open(&path).map_err(|e| if is_missing(&e) { missing(dir) } else { RunError::file(&path, e) })?;
         // SAFETY: a published file is only ever replaced by rename, never written in place, so the mapped bytes do
         // not change; a user who edits or truncates the file while it is mapped breaks this, as for any map.
         #[allow(unsafe_code)]

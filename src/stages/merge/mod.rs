@@ -112,6 +112,18 @@ pub enum Label {
     None,
 }
 
+impl Label {
+    /// The name in JSON and text.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::NearGlobal => "near-global",
+            Self::Partial => "partial",
+            Self::None => "none",
+        }
+    }
+}
+
 /// A mirror plane with its evidence.
 #[derive(Clone, Debug)]
 pub struct SymmetryPlane {
