@@ -7,11 +7,14 @@ use common::{archive, code, run, stderr, stdout};
 #[test]
 fn bad_usage_and_bad_settings_cannot_run() {
     let dir = tempfile::tempdir().unwrap();
-    let cases: [(&[&str], &str); 5] = [
+    std::fs::create_dir(dir.path().join("empty")).unwrap();
+    let cases: [(&[&str], &str); 7] = [
         (&["run"], "pipeline.toml"),
         (&["run", "missing"], "missing"),
         (&["run", "--shard", "3/2", "x"], "3/2"),
-        (&["eval"], "models.symalign"),
+        (&["eval", "--store", "none"], "is no store"),
+        (&["eval"], "not finished"),
+        (&["run", "empty", "--store", "none"], "no model in the input"),
         (&["frobnicate"], "frobnicate"),
     ];
     for (args, named) in cases {
@@ -46,7 +49,8 @@ fn inspect_tells_of_a_model_that_cannot_be_read() {
     let object: serde_json::Value = serde_json::from_str(&stdout(&output)).unwrap();
     assert_eq!((&object["model"], &object["error"]["stage"]), (&"broken.stp".into(), &"parse".into()));
     assert!(object["error"]["why"].is_string() && object["error"]["entity"].is_null(), "{object}");
-    assert_eq!(code(&run(dir.path(), &["inspect", "missing.stp"])), 2);
+    let output = run(dir.path(), &["inspect", "missing.stp", "broken.stp", "--json"]);
+    assert_eq!((code(&output), stdout(&output).lines().count()), (1, 2), "a missing file does not cost the others");
 }
 
 #[test]
