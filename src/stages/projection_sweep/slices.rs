@@ -21,6 +21,10 @@ use super::reference::Turntable;
 /// Edge crossings held at a time by one worker: bounds the memory at some 100 MB.
 const CROSSINGS: usize = 1 << 20;
 
+/// Edge crossings in all: a mesh of millions of triangles is cut into fewer slices, but never fewer than so many.
+const MOST_CROSSINGS: usize = 1 << 26;
+const FEWEST_SLICES: usize = 16;
+
 /// A point of a cut: (along u, along v) of the turntable, mm.
 pub(super) type Flat = [f64; 2];
 
@@ -51,15 +55,21 @@ impl Slices {
 
     /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
     pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
-        let count = count.clamp(1, 65_536) as usize;
+        let mut count = count.clamp(1, 65_536) as usize;
         let heights: Vec<f64> = mesh.points.iter().map(|p| table.axis.dot(&(p - table.centre))).collect();
         let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &z| (l.min(z), h.max(z)));
-        let thickness = (high - low) / count as f64;
+        let mut thickness = (high - low) / count as f64;
         if !(thickness > 0.0 && thickness.is_finite()) {
             return Ok(Self { thickness: 0.0, slices: Vec::new() });
         }
-        let wire = Wire::new(mesh, table, low, thickness, count);
-        let crossings: usize = wire.edges.iter().map(|e| wire.span(e, 0..count).len()).sum();
+        let mut wire = Wire::new(mesh, table, low, thickness, count);
+        let mut crossings = wire.crossings(count);
+        if crossings > MOST_CROSSINGS && count > FEWEST_SLICES {
+            count = (count * MOST_CROSSINGS / crossings).max(FEWEST_SLICES);
+            thickness = (high - low) / count as f64;
+            wire = Wire::new(mesh, table, low, thickness, count);
+            crossings = wire.crossings(count);
+        }
         let block = (count * CROSSINGS / crossings.max(CROSSINGS)).max(1);
         let blocks: Vec<_> = (0..count).step_by(block).map(|s| s..(s + block).min(count)).collect();
         let cut = |b: &Range<usize>| cancel.check().map(|()| wire.cut(b.clone()));
@@ -219,6 +229,11 @@ impl Wire {
         let [lower, upper] = edge.map(|i| self.vertices[i as usize].level);
         let start = lower.max(block.start);
         start..upper.min(block.end).max(start)
+    }
+
+    /// How often edges cross slices.
+    fn crossings(&self, count: usize) -> usize {
+        self.edges.iter().map(|e| self.span(e, 0..count).len()).sum()
     }
 
     /// Cuts the slices of a block.
