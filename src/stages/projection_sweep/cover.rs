@@ -1,9 +1,20 @@
 //! Convex hulls inside a larger one, which cast no shadow of their own.
 
+use std::ops::Range;
+
 use super::slices::Flat;
 
+/// The hulls that do not lie inside the largest one, itself among them, in their order.
+pub(super) fn uncovered(points: &[Flat], hulls: &[Range<usize>]) -> Vec<Range<usize>> {
+    let area = |hull: &Range<usize>| doubled_area(&points[hull.clone()]);
+    let largest = hulls.iter().map(|hull| (area(hull), hull)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((_, largest)) = largest.filter(|(area, _)| *area > 0.0) else { return hulls.to_vec() };
+    let cover = Cover::of(&points[largest.clone()]);
+    hulls.iter().filter(|h| *h == largest || !cover.holds(&points[(*h).clone()])).cloned().collect()
+}
+
 /// A convex polygon that is asked what lies inside it.
-pub(super) struct Cover<'a> {
+struct Cover<'a> {
     /// Counter-clockwise.
     hull: &'a [Flat],
     centre: Flat,
@@ -13,7 +24,7 @@ pub(super) struct Cover<'a> {
 
 impl<'a> Cover<'a> {
     /// `hull`: counter-clockwise, at least a triangle.
-    pub fn of(hull: &'a [Flat]) -> Self {
+    fn of(hull: &'a [Flat]) -> Self {
         let share = 1.0 / hull.len().max(1) as f64;
         let centre = [0, 1].map(|i| hull.iter().map(|p| p[i]).sum::<f64>() * share);
         let mut cover = Self { hull, centre, within: 0.0 };
@@ -24,7 +35,7 @@ impl<'a> Cover<'a> {
     }
 
     /// Whether the polygon holds all of `points`.
-    pub fn holds(&self, points: &[Flat]) -> bool {
+    fn holds(&self, points: &[Flat]) -> bool {
         points.iter().all(|p| {
             let d = [p[0] - self.centre[0], p[1] - self.centre[1]];
             d[0] * d[0] + d[1] * d[1] <= self.within || self.heights(*p).all(|height| height >= 0.0)
@@ -42,7 +53,7 @@ impl<'a> Cover<'a> {
 }
 
 /// Twice the area of a counter-clockwise polygon, mm^2.
-pub(super) fn doubled_area(hull: &[Flat]) -> f64 {
+fn doubled_area(hull: &[Flat]) -> f64 {
     let ends = hull.iter().cycle().skip(1);
     hull.iter().zip(ends).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
 }
@@ -50,6 +61,15 @@ pub(super) fn doubled_area(hull: &[Flat]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_hulls_outside_the_largest_are_kept() {
+        // A square of side 4, a triangle inside it, one beside it.
+        let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 1.0], [2.0, 1.0], [1.0, 2.0], [5.0, 0.0]];
+        let points: Vec<Flat> = points.into_iter().chain([[6.0, 0.0], [5.0, 1.0]]).collect();
+        assert_eq!(uncovered(&points, &[4..7, 0..4, 7..10]), [0..4, 7..10]);
+        assert_eq!(uncovered(&points, &[]), []);
+    }
 
     #[test]
     fn a_square_holds_what_is_inside_and_on_its_border() {

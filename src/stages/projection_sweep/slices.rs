@@ -14,7 +14,7 @@ use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
 use crate::stages::parse::Parsed;
 
-use super::cover::{Cover, doubled_area};
+use super::cover::uncovered;
 use super::curve::Shadows;
 use super::reference::Turntable;
 
@@ -110,14 +110,10 @@ impl Slice {
     /// Drops the hulls inside the largest one, whose shadows are parts of its own: a plate with ten thousand holes
     /// casts the shadow of a plate.
     fn drop_covered(&mut self) {
-        let area = |hull: &Range<usize>| doubled_area(&self.points[hull.clone()]);
-        let largest = self.hulls.iter().map(|hull| (area(hull), hull)).max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, largest)) = largest.filter(|(area, _)| *area > 0.0 && self.hulls.len() > 1) else { return };
-        let cover = Cover::of(&self.points[largest.clone()]);
         let mut kept = Self::default();
-        for hull in self.hulls.iter().filter(|h| *h == largest || !cover.holds(&self.points[(*h).clone()])) {
+        for hull in uncovered(&self.points, &self.hulls) {
             let start = kept.points.len();
-            kept.points.extend_from_slice(&self.points[hull.clone()]);
+            kept.points.extend_from_slice(&self.points[hull]);
             kept.hulls.push(start..kept.points.len());
         }
         *self = kept;
