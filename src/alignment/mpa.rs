@@ -140,11 +140,10 @@ impl<'a> Circle<'a> {
         // After half a turn the shadows repeat: there the first and the last are neighbours.
         let around = angles.len() as f64 * STEP > PI - 0.5 * STEP;
         let count = areas.len();
-        let lower = |k: usize, ahead: usize| {
-            let other = (k + count + ahead - 1) % count;
-            (!around && k.abs_diff(other) > 1) || areas[k] <= areas[other]
-        };
-        let mut low: Vec<_> = (0..count).filter(|&k| lower(k, 0) && lower(k, 2)).collect();
+        let before = |k: usize| if k > 0 { Some(k - 1) } else { around.then_some(count - 1) };
+        let after = |k: usize| if k + 1 < count { Some(k + 1) } else { around.then_some(0) };
+        let is_low = |&k: &usize| [before(k), after(k)].iter().flatten().all(|&other| areas[k] <= areas[other]);
+        let mut low: Vec<_> = (0..count).filter(is_low).collect();
         low.sort_by(|&a, &b| areas[a].total_cmp(&areas[b]));
         let closed_in = |&k: &usize| {
             let angle = self.golden_section(angles[k])?;

@@ -18,6 +18,7 @@ use crate::brep::measure::Measures;
 use crate::brep::sample::{Sample, sample_mesh};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::bvh::Bvh;
+use crate::geometry::directions::half_sphere;
 use crate::geometry::{Matrix, Plane, Point, Vector};
 
 use super::cpca;
@@ -55,7 +56,7 @@ pub fn axes(mesh: &Mesh, measures: &Measures, cancel: &Cancel) -> Result<[Vector
     let principal = cpca::axes(mesh).map(|axis| towards_the_far_end(&samples, measures, axis));
     let transform = Transform::new(mesh, samples, measures, principal);
     let mut normals: Vec<_> = principal.to_vec();
-    normals.extend(half_sphere(&principal));
+    normals.extend(half_sphere(&principal, DIRECTIONS));
     let Some(first) = transform.best(&normals, None, cancel)? else { return Ok(principal) };
     let first = first.normal;
     let beside = principal.iter().map(|p| p - first * first.dot(p)).find(|p| p.norm() > 0.5);
@@ -74,16 +75,6 @@ pub fn axes(mesh: &Mesh, measures: &Measures, cancel: &Cancel) -> Result<[Vector
 fn towards_the_far_end(samples: &[Sample], measures: &Measures, axis: Vector) -> Vector {
     let third: f64 = samples.iter().map(|s| axis.dot(&(s.point - measures.centroid)).powi(3)).sum();
     if third < 0.0 { -axis } else { axis }
-}
-
-/// Directions spread evenly over half the sphere (a Fibonacci spiral) about the third axis.
-fn half_sphere(axes: &[Vector; 3]) -> impl Iterator<Item = Vector> + '_ {
-    let golden = PI * (3.0 - 5.0_f64.sqrt());
-    (0..DIRECTIONS).map(move |k| {
-        let height = (k as f64 + 0.5) / DIRECTIONS as f64;
-        let (sin, cos) = (golden * k as f64).sin_cos();
-        (axes[0] * cos + axes[1] * sin) * (1.0 - height * height).sqrt() + axes[2] * height
-    })
 }
 
 /// The transform of one model, to be evaluated at planes.

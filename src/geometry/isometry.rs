@@ -33,6 +33,12 @@ impl Isometry {
         }
     }
 
+    /// A rotation that keeps a point in place.
+    pub fn about(point: &Point, rotation: &Matrix) -> Self {
+        let translation = point.coords - rotation * point.coords;
+        Self { rotation: *rotation, translation, chirality: Chirality::Proper }
+    }
+
     /// The image of a point.
     pub fn apply(&self, p: &Point) -> Point {
         Point::from(self.rotation * p.coords + self.translation)

@@ -4,6 +4,7 @@
 
 pub mod aabb;
 pub mod bvh;
+pub mod directions;
 pub mod frame;
 pub mod isometry;
 pub mod plane;

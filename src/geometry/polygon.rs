@@ -31,30 +31,48 @@ pub fn winding_number(polygon: &[Point2], p: &Point2) -> i32 {
     winding
 }
 
-/// The convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain).
+/// The convex hull of `points`, counter-clockwise without collinear points.
 pub fn convex_hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    points.dedup();
-    if points.len() < 3 {
-        return points;
-    }
     let mut hull = Vec::new();
-    push_chain(points.iter(), 0, &mut hull);
-    let upper = hull.len() - 1;
-    hull.truncate(upper);
-    push_chain(points.iter().rev(), upper, &mut hull);
-    hull.pop();
+    push_hull(&mut points, &mut hull);
     hull
 }
 
+/// Appends the convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain). The points
+/// are left sorted.
+pub fn push_hull(points: &mut [[f64; 2]], hull: &mut Vec<[f64; 2]>) {
+    points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    let mut distinct = 1;
+    for i in 1..points.len() {
+        if points[i] != points[distinct - 1] {
+            points[distinct] = points[i];
+            distinct += 1;
+        }
+    }
+    let points = &points[..distinct.min(points.len())];
+    let base = hull.len();
+    if points.len() < 3 {
+        hull.extend_from_slice(points);
+        return;
+    }
+    push_chain(points.iter(), base, hull);
+    let upper = hull.len() - 1;
+    hull.truncate(upper);
+    push_chain(points.iter().rev(), upper, hull);
+    hull.pop();
+}
+
 fn push_chain<'a>(points: impl Iterator<Item = &'a [f64; 2]>, base: usize, hull: &mut Vec<[f64; 2]>) {
-    let right = |a: [f64; 2], b: [f64; 2], c: &[f64; 2]| (b[0] - a[0]) * (c[1] - b[1]) <= (b[1] - a[1]) * (c[0] - b[0]);
-    for p in points {
-        while hull.len() >= base + 2 && right(hull[hull.len() - 2], hull[hull.len() - 1], p) {
+    for &p in points {
+        while hull.len() >= base + 2 && turns_right(hull[hull.len() - 2], hull[hull.len() - 1], p) {
             hull.pop();
         }
-        hull.push(*p);
+        hull.push(p);
     }
+}
+
+fn turns_right(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
+    (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 0.0
 }
 
 #[cfg(test)]

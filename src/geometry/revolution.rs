@@ -3,6 +3,14 @@
 use super::principal::symmetric_eigen;
 use super::{Matrix, Point, Vector};
 
+/// Turns under which a body of revolution stays as it is, radians: no part of a full turn that gears use.
+pub const TURNS: [f64; 3] = [0.7, 1.9, 3.7];
+
+/// The rotation by an angle (radians) about a unit direction.
+pub fn turn(direction: &Vector, angle: f64) -> Matrix {
+    *nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(*direction), angle).matrix()
+}
+
 /// A line with a direction whose sign has no meaning: the axis of a body or face of revolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {

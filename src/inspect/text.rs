@@ -26,7 +26,7 @@ fn described_lines(described: &Described) -> Vec<String> {
     let mut lines = model_lines(parsed);
     lines.extend(symmetry_lines(symmetries));
     let [a, b, c] = canonical.areas;
-    let source = format!("{:?}", canonical.source).to_lowercase();
+    let source = canonical.source.name();
     let doubt = if canonical.axisymmetric { "; axisymmetric, so the second axis is a convention" } else { "" };
     lines.push(format!("frame by {source}; projected areas {a:.2}, {b:.2}, {c:.2} mm2{doubt}"));
     lines

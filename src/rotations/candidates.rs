@@ -1,9 +1,9 @@
 //! Rotations about the centroid that may map a model onto itself.
 
-use super::turn;
 use crate::alignment::cpca;
 use crate::brep::MeshFace;
 use crate::geometry::principal::symmetric_eigen;
+use crate::geometry::revolution::turn;
 use crate::geometry::{Matrix, Vector};
 use crate::stages::merge::Symmetries;
 use crate::stages::parse::Parsed;

@@ -18,7 +18,8 @@ pub mod bop;
 mod candidates;
 
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Axis, Chirality, Isometry, Matrix, Point, Vector, any_perpendicular};
+use crate::geometry::revolution::{TURNS, turn};
+use crate::geometry::{Axis, Isometry, Matrix, Point, Vector, any_perpendicular};
 use crate::stages::merge::Symmetries;
 use crate::stages::parse::Parsed;
 use crate::stages::validate::support::{Round, SurfaceField};
@@ -46,8 +47,6 @@ impl Default for Options {
 const SAME: f64 = 0.015;
 /// More rotations than a body of real teeth has; a larger group is not closed.
 const MOST: usize = 720;
-/// Turns under which a body of revolution stays as it is, radians: no part of a full turn that gears use.
-const TURNS: [f64; 3] = [0.7, 1.9, 3.7];
 
 /// The rotations that map a model onto itself.
 #[derive(Clone, Debug, Default)]
@@ -105,8 +104,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// The rotation about the centroid.
     fn about_centre(&self, rotation: &Matrix) -> Isometry {
-        let translation = self.centre.coords - rotation * self.centre.coords;
-        Isometry { rotation: *rotation, translation, chirality: Chirality::Proper }
+        Isometry::about(&self.centre, rotation)
     }
 
     /// Whether the rotation maps the surface onto itself.
@@ -151,11 +149,6 @@ impl Search<'_> {
 /// Whether a rotation is neither the identity nor among those found.
 fn is_new(found: &[Matrix], rotation: &Matrix) -> bool {
     (rotation - Matrix::identity()).norm() > SAME && found.iter().all(|other| (rotation - other).norm() > SAME)
-}
-
-/// The rotation by an angle (radians) about a unit direction.
-fn turn(direction: &Vector, angle: f64) -> Matrix {
-    *nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_normalize(*direction), angle).matrix()
 }
 
 /// What rotations are sorted by: the angle in steps of 1e-4 radians, then the axis.

@@ -11,7 +11,7 @@ const EXACT: f64 = 0.995;
 
 /// Adds the images of exact planes in each other, and their images, until there are no new ones.
 pub(super) fn close(merger: &Merger, pool: &mut Vec<SymmetryPlane>, index: &mut PlaneIndex) -> Result<(), Cancelled> {
-    let mut exact: Vec<Plane> = pool.iter().filter(|p| p.coverage >= EXACT).map(|p| p.plane).collect();
+    let mut exact: Vec<Exact> = pool.iter().filter(|p| p.coverage >= EXACT).map(|p| (p.plane, p.residual)).collect();
     let mut next = 0;
     while next < exact.len() && exact.len() <= merger.options.finalists {
         merger.cancel.check()?;
@@ -26,14 +26,17 @@ pub(super) fn close(merger: &Merger, pool: &mut Vec<SymmetryPlane>, index: &mut 
     Ok(())
 }
 
+/// A plane and its residual, mm.
+type Exact = (Plane, f64);
+
 /// The image of a plane in another one, if it is new and maps the surface; it joins the pool.
 fn implied(
     merger: &Merger,
-    plane: &Plane,
-    mirror: &Plane,
+    (plane, residual): &Exact,
+    (mirror, mirror_residual): &Exact,
     pool: &mut Vec<SymmetryPlane>,
     index: &mut PlaneIndex,
-) -> Option<Plane> {
+) -> Option<Exact> {
     let foot = mirror.reflect(&plane.project(&merger.parsed.measures.centroid));
     let image = Plane::through(&foot, &mirror.reflect_vector(&plane.normal));
     if index.find(&image).is_some() {
@@ -42,8 +45,7 @@ fn implied(
     let coverage = merger.validated.field.reaches(&image.reflection(), EXACT)?;
     index.add(image);
     // An image is off by what both planes are.
-    let residual = |plane: &Plane| pool.iter().find(|p| p.plane == *plane).map_or(0.0, |p| p.residual);
-    let residual = residual(plane) + residual(mirror);
+    let residual = residual + mirror_residual;
     pool.push(SymmetryPlane { source: Source::Principal, ..super::principal::candidate(image, coverage, residual) });
-    Some(image)
+    Some((image, residual))
 }

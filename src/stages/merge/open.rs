@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::Merger;
 use crate::cancel::Cancelled;
 use crate::geometry::bvh::Recent;
+use crate::geometry::directions::half_sphere;
 use crate::geometry::{Plane, Vector, any_perpendicular};
 use crate::stages::validate::support::Round;
 
@@ -54,16 +55,7 @@ impl Open {
                 let angle = |i: usize| PI * i as f64 / ON_CIRCLE as f64;
                 (0..ON_CIRCLE).map(|i| x * angle(i).cos() + y * angle(i).sin()).collect()
             }
-            None => {
-                // The lattice of Fibonacci, the golden angle from one to the next.
-                let golden = PI * (3.0 - 5.0_f64.sqrt());
-                let direction = |i: usize| {
-                    let z = (i as f64 + 0.5) / ON_SPHERE as f64;
-                    let (r, angle) = ((1.0 - z * z).sqrt(), golden * i as f64);
-                    Vector::new(r * angle.cos(), r * angle.sin(), z)
-                };
-                (0..ON_SPHERE).map(direction).collect()
-            }
+            None => half_sphere(&[Vector::x(), Vector::y(), Vector::z()], ON_SPHERE).collect(),
         }
     }
 }

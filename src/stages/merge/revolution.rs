@@ -3,13 +3,11 @@
 use super::principal::{candidate, polish};
 use super::{Merger, SymmetryPlane};
 use crate::cancel::Cancelled;
-use crate::geometry::revolution::fit_axis;
-use crate::geometry::{Axis, Chirality, Isometry, Plane, Vector, any_perpendicular};
+use crate::geometry::revolution::{TURNS, fit_axis, turn};
+use crate::geometry::{Axis, Isometry, Plane, Vector, any_perpendicular};
 use crate::stages::isometry::Source;
 use crate::stages::validate::support::Round;
 
-/// Turns under which a body of revolution stays as it is, radians: no part of a full turn that gears use.
-const TURNS: [f64; 3] = [0.7, 1.9, 3.7];
 /// Support from which nothing tells the planes through the axis apart: the samples of 4,000 that rounding may cost.
 const WHOLE: f64 = 0.998;
 /// An axis of a face is the fitted one within this sine and share of D.
@@ -81,9 +79,7 @@ fn turns(merger: &Merger, axis: &Axis) -> Result<bool, Cancelled> {
 }
 
 fn rotation(axis: &Axis, angle: f64) -> Isometry {
-    let unit = nalgebra::Unit::new_normalize(axis.direction);
-    let rotation = *nalgebra::Rotation3::from_axis_angle(&unit, angle).matrix();
-    Isometry { rotation, translation: axis.point.coords - rotation * axis.point.coords, chirality: Chirality::Proper }
+    Isometry::about(&axis.point, &turn(&axis.direction, angle))
 }
 
 /// For a body of revolution: of the planes through the axis keeps one, and adds the plane across in the middle. Where

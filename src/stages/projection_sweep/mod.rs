@@ -137,6 +137,17 @@ pub enum Source {
     Cpca,
 }
 
+impl Source {
+    /// The name in JSON and text.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Symmetry => "symmetry",
+            Self::Rectilinearity => "rectilinearity",
+            Self::Cpca => "cpca",
+        }
+    }
+}
+
 /// The projected area of the model on the planes that contain the reference axis.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {

@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::brep::Mesh;
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Vector, polygon};
 use crate::stages::parse::Parsed;
 
 use super::cover::uncovered;
@@ -240,7 +240,7 @@ impl Wire {
         for (end, slice) in pieces {
             let slice = &mut slices[slice - block.start];
             let start = slice.points.len();
-            push_hull(&mut points[from..end], &mut slice.points);
+            polygon::push_hull(&mut points[from..end], &mut slice.points);
             slice.hulls.push(start..slice.points.len());
             from = end;
         }
@@ -360,40 +360,4 @@ impl Crossings {
         }
         (points, pieces)
     }
-}
-
-/// Appends the convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain).
-fn push_hull(points: &mut [Flat], hull: &mut Vec<Flat>) {
-    points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let mut distinct = 1;
-    for i in 1..points.len() {
-        if points[i] != points[distinct - 1] {
-            points[distinct] = points[i];
-            distinct += 1;
-        }
-    }
-    let points = &points[..distinct.min(points.len())];
-    let base = hull.len();
-    if points.len() < 3 {
-        hull.extend_from_slice(points);
-        return;
-    }
-    push_chain(points.iter(), base, hull);
-    let upper = hull.len() - 1;
-    hull.truncate(upper);
-    push_chain(points.iter().rev(), upper, hull);
-    hull.pop();
-}
-
-fn push_chain<'a>(points: impl Iterator<Item = &'a Flat>, base: usize, hull: &mut Vec<Flat>) {
-    for &p in points {
-        while hull.len() >= base + 2 && turns_right(hull[hull.len() - 2], hull[hull.len() - 1], p) {
-            hull.pop();
-        }
-        hull.push(p);
-    }
-}
-
-fn turns_right(a: Flat, b: Flat, c: Flat) -> bool {
-    (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 0.0
 }

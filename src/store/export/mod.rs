@@ -21,14 +21,14 @@ use crate::error::{Result, RunError};
 struct Facts {
     id: String,
     hash: String,
-    label: String,
+    label: &'static str,
     coverage: f64,
     solids: u64,
     faces: u64,
     triangles: u64,
     area_mm2: f64,
     volume_mm3: f64,
-    source: String,
+    source: &'static str,
 }
 
 impl Facts {
@@ -37,22 +37,16 @@ impl Facts {
         Ok(Self {
             id: store.id(i).to_owned(),
             hash: blake3::Hash::from_bytes(store.hash(i)).to_string(),
-            label: name_of(&s.label)?,
+            label: s.label.name(),
             coverage: s.planes.first().map_or(0.0, |plane| plane.coverage),
             solids: s.solids as u64,
             faces: s.faces as u64,
             triangles: s.triangles as u64,
             area_mm2: s.area_mm2,
             volume_mm3: s.volume_mm3,
-            source: name_of(&s.source)?,
+            source: s.source.name(),
         })
     }
-}
-
-/// The name of a unit variant, as JSON has it.
-fn name_of<T: Serialize>(value: &T) -> Result<String> {
-    let json = serde_json::to_value(value).map_err(|e| RunError::Usage(e.to_string()))?;
-    Ok(json.as_str().unwrap_or_default().to_owned())
 }
 
 /// The 12 numbers of the frame of model `i`.

@@ -77,14 +77,14 @@ fn table(
 fn of_facts(group: &mut Group, facts: &[Facts]) -> Done<()> {
     texts(group, facts.iter().map(|f| f.id.as_str()))?;
     texts(group, facts.iter().map(|f| f.hash.as_str()))?;
-    texts(group, facts.iter().map(|f| f.label.as_str()))?;
+    texts(group, facts.iter().map(|f| f.label))?;
     column::<DoubleType>(group, facts.iter().map(|f| f.coverage), None)?;
     column::<Int64Type>(group, facts.iter().map(|f| f.solids as i64), None)?;
     column::<Int64Type>(group, facts.iter().map(|f| f.faces as i64), None)?;
     column::<Int64Type>(group, facts.iter().map(|f| f.triangles as i64), None)?;
     column::<DoubleType>(group, facts.iter().map(|f| f.area_mm2), None)?;
     column::<DoubleType>(group, facts.iter().map(|f| f.volume_mm3), None)?;
-    texts(group, facts.iter().map(|f| f.source.as_str()))
+    texts(group, facts.iter().map(|f| f.source))
 }
 
 /// `magnitudes`, `phases`: those of all models of the store.
