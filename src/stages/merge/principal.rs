@@ -19,12 +19,16 @@ const DISTINCT: f64 = 1e-3;
 const OPEN: f64 = 0.03;
 /// A plane this near (radians, share of D) to one already known is not polished: exact planes only get worse.
 const KNOWN: (f64, f64) = (0.035, 0.01);
-/// Radii of the rounds of polishing, as shares of D: wide first, to be caught, then tight.
-const RADII: [f64; 8] = [0.04, 0.04, 0.03, 0.02, 0.015, 0.01, 0.006, 0.004];
+/// Radii of the rounds of polishing, as shares of D: wide first, to be caught, ..
+const CATCH: [f64; 5] = [0.04, 0.04, 0.03, 0.02, 0.015];
+/// .. then tight, with more samples.
+const TIGHTEN: [f64; 3] = [0.01, 0.006, 0.004];
+/// Only planes that tie with the best are kept in the end (`rank`); by 500 samples they may seem this much worse.
+const ROUGH: f64 = 0.1;
 
 /// Planes across the axes that no plane of the pool is near to already.
 pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<SymmetryPlane>, Cancelled> {
-    let (field, size) = (&merger.validated.field, merger.parsed.measures.tolerance.size());
+    let field = &merger.validated.field;
     let best = pool.iter().map(|p| p.coverage).fold(0.0, f64::max);
     let mut found: Vec<SymmetryPlane> = Vec::new();
     let axes = Axes::of(merger, field);
@@ -32,17 +36,19 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
     if let Some(open) = &axes.open {
         normals.extend(open.promising(merger)?);
     }
+    // Without faces that speak for it, a plane that misses much of the surface is an accident.
+    let needed = (merger.options.near_global - 0.05).max(best - ROUGH);
     for normal in normals {
         merger.cancel.check()?;
-        let plane = Plane::through(&merger.parsed.measures.centroid, &normal);
-        let known = |p: &&SymmetryPlane| p.coverage >= best - 0.1 && near(&p.plane, &plane, merger);
-        if pool.iter().chain(&found).any(|p| known(&p)) {
-            continue;
-        }
-        // Without faces that speak for it, a plane that misses much of the surface is an accident.
-        let needed = merger.options.near_global - 0.05;
-        let Some((plane, residual)) = polish(field, plane, merger, size, needed) else { continue };
-        if let Some(coverage) = field.reaches(&plane.reflection(), needed) {
+        let is_known = |plane: &Plane| {
+            let known = |p: &SymmetryPlane| p.coverage >= best - ROUGH && near(&p.plane, plane, merger);
+            pool.iter().chain(&found).any(known)
+        };
+        let start = Plane::through(&merger.parsed.measures.centroid, &normal);
+        let polished = polish(merger, start, needed, |plane| !is_known(plane));
+        if let Some((plane, residual)) = polished
+            && let Some(coverage) = field.reaches(&plane.reflection(), needed)
+        {
             found.push(candidate(plane, coverage, residual));
         }
     }
@@ -109,23 +115,34 @@ fn distinct_axes(matrix: &Matrix) -> Vec<Vector> {
 }
 
 /// Point-to-surface ICP of the mirrored samples over the plane's three degrees of freedom. Returns the plane and the
-/// root mean square distance; `None` as soon as less of the surface is met than `needed`, for the radii shrink.
+/// root mean square distance; `None` as soon as less of the surface is met than `needed`, for the radii shrink, or
+/// where the plane is not `wanted`, as it starts or once it is caught.
 pub(super) fn polish(
-    field: &SurfaceField,
-    start: Plane,
     merger: &Merger,
-    size: f64,
+    start: Plane,
     needed: f64,
+    wanted: impl Fn(&Plane) -> bool,
 ) -> Option<(Plane, f64)> {
+    let field = &merger.validated.field;
     let (mut plane, mut residual) = (start, 0.0);
     let mut guesses = Vec::new();
-    for (i, radius) in RADII.iter().enumerate() {
-        let round = if i + 3 < RADII.len() { Round::Coarse } else { Round::Middle };
-        // Half of it at first: the start may be off.
-        let least = if i < 2 { 0.5 * needed } else { needed };
-        let step = Step::of(merger, &plane, field.samples(round), radius * size, least, &mut guesses)?;
+    let mut round = |plane: &Plane, round, radius: f64, least| {
+        let step = Step::of(merger, plane, field.samples(round), radius, least, &mut guesses)?;
         residual = (step.squared / step.met as f64).sqrt();
-        plane = step.solved(&plane, size, merger)?;
+        step.solved(plane, merger)
+    };
+    if !wanted(&plane) {
+        return None;
+    }
+    for (i, radius) in CATCH.into_iter().enumerate() {
+        // Half of it at first: the start may be off.
+        plane = round(&plane, Round::Coarse, radius, if i < 2 { 0.5 * needed } else { needed })?;
+    }
+    if !wanted(&plane) || field.reaches(&plane.reflection(), needed - ROUGH).is_none() {
+        return None;
+    }
+    for radius in TIGHTEN {
+        plane = round(&plane, Round::Middle, radius, needed)?;
     }
     Some((plane, residual))
 }
@@ -140,7 +157,7 @@ struct Step {
 }
 
 impl Step {
-    /// `None` as soon as a smaller share than `least` of the samples can meet the surface. `guesses` are the triangles
+    /// `None` as soon as a smaller share than `least` of the samples can meet the surface within `radius`, a share of D. `guesses` are the triangles
     /// that the samples met in the step before.
     fn of(
         merger: &Merger,
@@ -153,15 +170,14 @@ impl Step {
         let field = &merger.validated.field;
         let first = any_perpendicular(&plane.normal);
         let basis = [first, plane.normal.cross(&first)];
-        let centroid = merger.parsed.measures.centroid;
-        let size = merger.parsed.measures.tolerance.size();
+        let (centroid, size) = (merger.parsed.measures.centroid, merger.parsed.measures.tolerance.size());
         let mut step = Self { basis, matrix: Matrix::zeros(), right: Vector::zeros(), squared: 0.0, met: 0 };
         guesses.resize(samples.len(), u32::MAX);
         let (mut missed, most_missed) = (0, (1.0 - least) * samples.len() as f64);
         for (sample, guess) in samples.iter().zip(guesses) {
             let image = plane.reflect(&sample.point);
             let normal = plane.reflect_vector(&sample.normal);
-            let Some(hit) = field.nearest((&image, &normal), radius, guess) else {
+            let Some(hit) = field.nearest((&image, &normal), radius * size, guess) else {
                 missed += 1;
                 if f64::from(missed) > most_missed {
                     return None;
@@ -184,10 +200,10 @@ impl Step {
     }
 
     /// The plane after the step; directions in which nothing is determined stay as they are.
-    fn solved(&self, plane: &Plane, size: f64, merger: &Merger) -> Option<Plane> {
+    fn solved(&self, plane: &Plane, merger: &Merger) -> Option<Plane> {
         let inverse = self.matrix.pseudo_inverse(1e-6 * self.matrix.norm()).ok()?;
         let change = inverse * self.right;
-        let centroid = merger.parsed.measures.centroid;
+        let (centroid, size) = (merger.parsed.measures.centroid, merger.parsed.measures.tolerance.size());
         let tilt = self.basis[0] * change.x + self.basis[1] * change.y;
         let normal = (plane.normal + tilt).try_normalize(0.0)?;
         let offset = -plane.signed_distance(&centroid) + change.z * size;

@@ -53,9 +53,8 @@ fn of_faces(merger: &Merger, fitted: &Axis) -> Option<Axis> {
 
 /// The fitted axis, made better as the line in which two polished planes through it meet.
 fn polished(merger: &Merger, fitted: &Axis) -> Option<Axis> {
-    let size = merger.parsed.measures.tolerance.size();
     let first = any_perpendicular(&fitted.direction);
-    let plane = |n: &Vector| polish(&merger.validated.field, Plane::through(&fitted.point, n), merger, size, 0.9);
+    let plane = |n: &Vector| polish(merger, Plane::through(&fitted.point, n), 0.9, |_| true);
     let (p, q) = (plane(&first)?.0, plane(&fitted.direction.cross(&first))?.0);
     let direction = p.normal.cross(&q.normal).try_normalize(0.1)?;
     let centroid = merger.parsed.measures.centroid;
