@@ -107,7 +107,7 @@ fn count(bytes: i64) {
 
 /// From this size on, bytes, a piece of memory is the system's again as soon as it is free.
 #[cfg(target_env = "gnu")]
-const LARGE: i32 = 128 << 10;
+const LARGE: i32 = 4 << 20;
 
 /// Has large pieces of memory given back as soon as they are free. Left alone, glibc keeps for each thread that once
 /// freed a large piece pieces of up to that size, and a run of large models comes to twice the memory.

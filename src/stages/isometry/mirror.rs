@@ -21,10 +21,10 @@ pub struct Fit {
 /// With centred points a, b and delta = mean(to) - mean(from), the squared error of the mirror with unit normal n is
 /// sum |b - a|^2 + N |delta|^2 + n^T M n, where M = 2 sum (a b^T + b a^T) - N delta delta^T: the best normal is the
 /// eigenvector of the smallest eigenvalue, and the plane goes through the middle of the means. `None` for fewer than
-/// three points.
-pub fn fit(from: &[Point], to: &[Point]) -> Option<Fit> {
+/// three points, and where the squared error of any plane is above `most` for certain.
+pub fn fit(from: &[Point], to: &[Point], most: f64) -> Option<Fit> {
     let count = from.len();
-    if count < 3 || count != to.len() {
+    if count < 3 || count != to.len() || least_squared(from, to) > most * 1.001 {
         return None;
     }
     let (v, w) = (mean(from), mean(to));
@@ -46,6 +46,22 @@ pub fn fit(from: &[Point], to: &[Point]) -> Option<Fit> {
     // The closed form subtracts nearly equal numbers; near zero only the distances themselves are exact.
     let squared = from.iter().zip(to).map(|(p, q)| (plane.reflect(p) - q).norm_squared()).sum::<f64>() / count as f64;
     Some(Fit { plane, squared, gap: (values[1] - values[0]) / largest })
+}
+
+/// What the mean squared error of any plane is at least, mm^2: a mirror moves points along its normal alone.
+///
+/// The error is at least the sum e of the two lower eigenvalues of S = mean(d d^T), d = to - from; and e times the trace
+/// of S is at least the sum of its principal minors, l1 l2 + l1 l3 + l2 l3.
+fn least_squared(from: &[Point], to: &[Point]) -> f64 {
+    let mut moved = Matrix::zeros();
+    for (p, q) in from.iter().zip(to) {
+        let d = q - p;
+        moved += d * d.transpose();
+    }
+    moved /= from.len() as f64;
+    let minor = |i: usize, j: usize| moved[(i, i)] * moved[(j, j)] - moved[(i, j)] * moved[(i, j)];
+    let trace = moved.trace();
+    if trace > 0.0 { (minor(0, 1) + minor(0, 2) + minor(1, 2)) / trace } else { 0.0 }
 }
 
 /// The plane of an improper isometry whose eigenvalue 1 is double; a shift along the plane (a glide) is ignored, as
@@ -74,7 +90,7 @@ mod tests {
         for normal in [Vector::new(1.0, 0.0, 0.0), Vector::new(1.0, 2.0, -0.5), Vector::new(0.1, 0.0, 1.0)] {
             let plane = Plane::through(&Point::new(7.0, 0.3, 2.0), &normal);
             let images: Vec<_> = corners().iter().map(|p| plane.reflect(p)).collect();
-            let fit = fit(&corners(), &images).unwrap();
+            let fit = fit(&corners(), &images, 1e-9).unwrap();
             assert!(fit.squared < 1e-24 && fit.gap > 0.1);
             assert!(fit.plane.angle_to(&plane) < 1e-9);
             assert!((fit.plane.canonical().offset - plane.canonical().offset).abs() < 1e-9);
@@ -88,7 +104,8 @@ mod tests {
         let mut to = from.map(|p| Point::new(-p.x, p.y, p.z));
         to[0].y += 1.0;
         to[1].y -= 1.0;
-        let fit = fit(&from, &to).unwrap();
+        let fit = fit(&from, &to, 0.5).unwrap();
+        assert!(super::fit(&from, &to, 0.1).is_none());
         assert!((fit.squared - 0.5).abs() < 1e-12);
         assert!(fit.plane.angle_to(&Plane { normal: Vector::x(), offset: 0.0 }) < 1e-12);
     }
@@ -97,7 +114,7 @@ mod tests {
     fn a_glide_has_a_plane_for_the_paper_only() {
         let plane = Plane { normal: Vector::x(), offset: 1.0 };
         let images: Vec<_> = corners().iter().map(|p| plane.reflect(p) + Vector::new(0.0, 4.0, 0.0)).collect();
-        assert!(fit(&corners(), &images).unwrap().squared > 0.1);
+        assert!(fit(&corners(), &images, f64::INFINITY).unwrap().squared > 0.1);
         let (glide, squared) = Isometry::fit(&corners(), &images, Chirality::Improper).unwrap();
         assert!(squared < 1e-20);
         let found = plane_of(&glide, 1e-6).unwrap();

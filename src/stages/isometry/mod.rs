@@ -175,7 +175,7 @@ fn mirror_of(outlines: &[Outline], pair: &FacePair, index: u32, size: f64, optio
         let (isometry, squared) = Isometry::fit(&from, &to, Chirality::Improper)?;
         (mirror::plane_of(&isometry, options.residual)?, squared)
     } else {
-        let fit = mirror::fit(&from, &to)?;
+        let fit = mirror::fit(&from, &to, (options.residual * size).powi(2))?;
         (fit.gap >= options.eigen_gap).then_some((fit.plane, fit.squared))?
     };
     let source = if single { Source::SingleFace } else { Source::Corners };

@@ -243,7 +243,9 @@ impl Merger<'_> {
         if residual > exact && validated.pairs.len() > 1 {
             let pairs = validated.pairs.iter().map(|&i| &self.matches.pairs[i as usize]);
             let (from, to): (Vec<_>, Vec<_>) = pairs.map(|p| p.corners(self.outlines)).unzip();
-            if let Some(fit) = mirror::fit(&from.concat(), &to.concat()).filter(|f| f.squared.sqrt() <= residual) {
+            if let Some(fit) =
+                mirror::fit(&from.concat(), &to.concat(), residual.powi(2)).filter(|f| f.squared.sqrt() <= residual)
+            {
                 (plane, residual) = (fit.plane, fit.squared.sqrt());
             }
         }

@@ -19,12 +19,14 @@ const DISTINCT: f64 = 1e-3;
 const OPEN: f64 = 0.03;
 /// A plane this near (radians, share of D) to one already known is not polished: exact planes only get worse.
 const KNOWN: (f64, f64) = (0.035, 0.01);
-/// Radii of the rounds of polishing, as shares of D: wide first, to be caught, ..
-const CATCH: [f64; 5] = [0.04, 0.04, 0.03, 0.02, 0.015];
-/// .. then tight, with more samples.
+/// Radii of the rounds of polishing, as shares of D: wide first and with every fourth sample of the first round only,
+/// to be caught, ..
+const CATCH: [(f64, usize); 5] = [(0.04, 4), (0.04, 4), (0.03, 4), (0.02, 1), (0.015, 1)];
+/// .. then tight, with those of the second.
 const TIGHTEN: [f64; 3] = [0.01, 0.006, 0.004];
-/// Only planes that tie with the best are kept in the end (`rank`); by 500 samples they may seem this much worse.
-const ROUGH: f64 = 0.1;
+/// What a plane may be below the best by 500 samples, for in the end only those that tie with it are kept (`rank`); and
+/// once more while it is not polished yet.
+const ROUGH: f64 = 0.05;
 
 /// Planes across the axes that no plane of the pool is near to already.
 pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<SymmetryPlane>, Cancelled> {
@@ -116,7 +118,7 @@ fn distinct_axes(matrix: &Matrix) -> Vec<Vector> {
 
 /// Point-to-surface ICP of the mirrored samples over the plane's three degrees of freedom. Returns the plane and the
 /// root mean square distance; `None` as soon as less of the surface is met than `needed`, for the radii shrink, or
-/// where the plane is not `wanted`, as it starts or once it is caught.
+/// where the plane is not `wanted` until it is caught.
 pub(super) fn polish(
     merger: &Merger,
     start: Plane,
@@ -124,25 +126,25 @@ pub(super) fn polish(
     wanted: impl Fn(&Plane) -> bool,
 ) -> Option<(Plane, f64)> {
     let field = &merger.validated.field;
-    let (mut plane, mut residual) = (start, 0.0);
-    let mut guesses = Vec::new();
-    let mut round = |plane: &Plane, round, radius: f64, least| {
-        let step = Step::of(merger, plane, field.samples(round), radius, least, &mut guesses)?;
+    let (mut plane, mut residual, mut guesses) = (start, 0.0, Vec::new());
+    let mut round = |plane: &Plane, (radius, stride), round, least| {
+        let samples = field.samples(round);
+        guesses.resize(samples.len(), u32::MAX);
+        let asked = samples.iter().zip(&mut guesses).step_by(stride);
+        let step = Step::of(merger, plane, asked, radius, least)?;
         residual = (step.squared / step.met as f64).sqrt();
         step.solved(plane, merger)
     };
-    if !wanted(&plane) {
-        return None;
-    }
     for (i, radius) in CATCH.into_iter().enumerate() {
         // Half of it at first: the start may be off.
-        plane = round(&plane, Round::Coarse, radius, if i < 2 { 0.5 * needed } else { needed })?;
+        let least = if i < 2 { 0.5 * needed } else { needed - ROUGH };
+        plane = wanted(&plane).then(|| round(&plane, radius, Round::Coarse, least))??;
     }
     if !wanted(&plane) || field.reaches(&plane.reflection(), needed - ROUGH).is_none() {
         return None;
     }
     for radius in TIGHTEN {
-        plane = round(&plane, Round::Middle, radius, needed)?;
+        plane = round(&plane, (radius, 1), Round::Middle, needed - ROUGH)?;
     }
     Some((plane, residual))
 }
@@ -157,24 +159,22 @@ struct Step {
 }
 
 impl Step {
-    /// `None` as soon as a smaller share than `least` of the samples can meet the surface within `radius`, a share of D. `guesses` are the triangles
-    /// that the samples met in the step before.
-    fn of(
+    /// `None` as soon as a smaller share than `least` of the samples can meet the surface within `radius`, a share of D.
+    /// With each sample goes the triangle that it met in the step before.
+    fn of<'a>(
         merger: &Merger,
         plane: &Plane,
-        samples: &[Sample],
+        samples: impl ExactSizeIterator<Item = (&'a Sample, &'a mut u32)>,
         radius: f64,
         least: f64,
-        guesses: &mut Vec<u32>,
     ) -> Option<Self> {
         let field = &merger.validated.field;
         let first = any_perpendicular(&plane.normal);
         let basis = [first, plane.normal.cross(&first)];
         let (centroid, size) = (merger.parsed.measures.centroid, merger.parsed.measures.tolerance.size());
         let mut step = Self { basis, matrix: Matrix::zeros(), right: Vector::zeros(), squared: 0.0, met: 0 };
-        guesses.resize(samples.len(), u32::MAX);
         let (mut missed, most_missed) = (0, (1.0 - least) * samples.len() as f64);
-        for (sample, guess) in samples.iter().zip(guesses) {
+        for (sample, guess) in samples {
             let image = plane.reflect(&sample.point);
             let normal = plane.reflect_vector(&sample.normal);
             let Some(hit) = field.nearest((&image, &normal), radius * size, guess) else {
