@@ -21,9 +21,9 @@ const OPEN: f64 = 0.03;
 const KNOWN: (f64, f64) = (0.035, 0.01);
 /// Radii of the rounds of polishing, as shares of D: wide first and with every fourth sample of the first round only,
 /// to be caught, ..
-const CATCH: [(f64, usize); 5] = [(0.04, 4), (0.04, 4), (0.03, 4), (0.02, 1), (0.015, 1)];
+const CATCH: [(f64, usize); 7] = [(0.04, 4), (0.04, 4), (0.03, 4), (0.02, 1), (0.015, 1), (0.01, 1), (0.006, 1)];
 /// .. then tight, with those of the second.
-const TIGHTEN: [f64; 3] = [0.01, 0.006, 0.004];
+const TIGHTEN: [f64; 2] = [0.006, 0.004];
 /// What a plane may be below the best by 500 samples, for in the end only those that tie with it are kept (`rank`); and
 /// once more while it is not polished yet.
 const ROUGH: f64 = 0.05;
@@ -140,7 +140,7 @@ pub(super) fn polish(
         let least = if i < 2 { 0.5 * needed } else { needed - ROUGH };
         plane = wanted(&plane).then(|| round(&plane, radius, Round::Coarse, least))??;
     }
-    if !wanted(&plane) || field.reaches(&plane.reflection(), needed - ROUGH).is_none() {
+    if !wanted(&plane) || field.reaches(&plane.reflection(), needed).is_none() {
         return None;
     }
     for radius in TIGHTEN {
