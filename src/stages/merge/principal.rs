@@ -13,7 +13,7 @@ use crate::geometry::{Matrix, Plane, Vector, any_perpendicular};
 use crate::stages::isometry::Source;
 use crate::stages::validate::support::{Round, SurfaceField};
 
-/// Eigenvalues closer than this (as a share of the largest) leave their vectors open: those depend on the pose.
+/// Eigenvalues closer than this (as a share of the larger) leave their vectors open: those depend on the pose.
 const DISTINCT: f64 = 1e-3;
 /// Eigenvalues closer than this may be equal: the share of 20,000 samples that chance moves, and the triangles.
 const OPEN: f64 = 0.03;
@@ -99,8 +99,7 @@ impl Axes {
 /// The directions between principal axes that samples do not tell apart.
 fn open(points: &Matrix) -> Option<Open> {
     let (values, vectors) = symmetric_eigen(points);
-    let near = |i: usize, j: usize| values[j] - values[i] <= OPEN * values[2];
-    match (near(0, 1), near(1, 2)) {
+    match (!apart(&values, 0, 1, OPEN), !apart(&values, 1, 2, OPEN)) {
         (true, true) => Some(Open { across: None }),
         (true, false) => Some(Open { across: Some(vectors[2]) }),
         (false, true) => Some(Open { across: Some(vectors[0]) }),
@@ -111,9 +110,15 @@ fn open(points: &Matrix) -> Option<Open> {
 /// Eigenvectors whose eigenvalues stand alone.
 fn distinct_axes(matrix: &Matrix) -> Vec<Vector> {
     let (values, vectors) = symmetric_eigen(matrix);
-    let apart = |i: usize, j: usize| (values[i] - values[j]).abs() > DISTINCT * values[2].abs();
-    let alone = |i: usize| (0..3).all(|j| i == j || apart(i, j));
+    let alone = |i: usize| (0..3).all(|j| i == j || apart(&values, i, j, DISTINCT));
     (0..3).filter(|&i| alone(i)).map(|i| vectors[i]).collect()
+}
+
+/// Whether two of the eigenvalues differ by more than a share of the larger: of the largest of all they would seem
+/// equal across every slender body. What rounding leaves of zeros is equal.
+fn apart(values: &[f64; 3], i: usize, j: usize, share: f64) -> bool {
+    let larger = values[i].max(values[j]).max(1e-9 * values[2]);
+    (values[i] - values[j]).abs() > share * larger
 }
 
 /// Point-to-surface ICP of the mirrored samples over the plane's three degrees of freedom. Returns the plane and the
