@@ -4,12 +4,10 @@
 //! whole faces that are each other's images (section IV.D validates faces, not areas), for large flat or round faces
 //! overlap their images by accident: a hub alone, a third of a propeller, agrees with every plane through its axis.
 
-use rustc_hash::FxHashMap;
-
 use super::{Merger, SymmetryPlane};
 use crate::brep::PlacedFaceId;
 use crate::cancel::Cancelled;
-use crate::geometry::{Plane, Point};
+use crate::geometry::{Plane, PointGrid};
 use crate::stages::validate;
 use crate::stages::validate::faces::FaceSamples;
 
@@ -25,7 +23,7 @@ pub(super) fn add(merger: &Merger, planes: &mut [SymmetryPlane]) -> Result<(), C
     let count = (merger.options.evidence / merger.outlines.len().max(1)).max(1);
     let options = validate::Options { face_samples: SAMPLES, ..validate::Options::default() };
     let mut samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, &options, SAMPLES);
-    let grid = Grid::of(merger);
+    let grid = grid(merger);
     for plane in planes.iter_mut().take(count) {
         merger.cancel.check()?;
         let faces = images(merger, &plane.plane, &grid, &mut samples);
@@ -43,7 +41,7 @@ pub(super) fn keep_confirmed(merger: &Merger, pool: &mut Vec<SymmetryPlane>, dou
     let mut room = (options.evidence / merger.outlines.len().max(1)).max(1);
     let look_up = validate::Options { face_samples: SAMPLES, ..validate::Options::default() };
     let mut samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, &look_up, SAMPLES);
-    let grid = Grid::of(merger);
+    let grid = grid(merger);
     let mut kept = Vec::new();
     for plane in pool.drain(..) {
         merger.cancel.check()?;
@@ -78,44 +76,13 @@ fn is_confirmed(merger: &Merger, plane: &SymmetryPlane, faces: &[(u32, u32)]) ->
 }
 
 /// Outlines by where their centroids are.
-struct Grid {
-    cells: FxHashMap<[i64; 3], Vec<u32>>,
-    width: f64,
-}
-
-impl Grid {
-    fn of(merger: &Merger) -> Self {
-        let width = 4.0 * merger.parsed.measures.tolerance.length(NEAR);
-        let mut grid = Self { cells: FxHashMap::default(), width };
-        for (i, outline) in merger.outlines.iter().enumerate() {
-            let cell = grid.cell(&outline.centroid, 0.0);
-            grid.cells.entry(cell).or_default().push(i as u32);
-        }
-        grid
-    }
-
-    fn cell(&self, p: &Point, shift: f64) -> [i64; 3] {
-        std::array::from_fn(|i| ((p[i] + shift) / self.width).floor() as i64)
-    }
-
-    /// Outlines in the cells around `p`, in the order of their numbers.
-    fn around(&self, p: &Point, radius: f64) -> Vec<u32> {
-        let (low, high) = (self.cell(p, -radius), self.cell(p, radius));
-        let mut found = Vec::new();
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for z in low[2]..=high[2] {
-                    found.extend(self.cells.get(&[x, y, z]).into_iter().flatten());
-                }
-            }
-        }
-        found.sort_unstable();
-        found
-    }
+fn grid(merger: &Merger) -> PointGrid {
+    let width = 4.0 * merger.parsed.measures.tolerance.length(NEAR);
+    PointGrid::new(merger.outlines.iter().map(|o| o.centroid), width)
 }
 
 /// Pairs (a, b), a <= b, of outlines that are each other's image.
-fn images(merger: &Merger, plane: &Plane, grid: &Grid, samples: &mut FaceSamples) -> Vec<(u32, u32)> {
+fn images(merger: &Merger, plane: &Plane, grid: &PointGrid, samples: &mut FaceSamples) -> Vec<(u32, u32)> {
     let radius = merger.parsed.measures.tolerance.length(NEAR);
     let mut taken = vec![false; merger.outlines.len()];
     let mut pairs = Vec::new();
@@ -124,10 +91,8 @@ fn images(merger: &Merger, plane: &Plane, grid: &Grid, samples: &mut FaceSamples
             continue;
         }
         let image = plane.reflect(&merger.outlines[a as usize].centroid);
-        let mut near: Vec<_> =
-            grid.around(&image, radius).into_iter().filter(|&b| b >= a && !taken[b as usize]).collect();
+        let mut near: Vec<_> = grid.near(&image, radius).filter(|&b| b >= a && !taken[b as usize]).collect();
         let distance = |b: u32| (merger.outlines[b as usize].centroid - image).norm();
-        near.retain(|&b| distance(b) <= radius);
         near.sort_by(|&b, &c| distance(b).total_cmp(&distance(c)).then(b.cmp(&c)));
         let field = &merger.validated.field;
         if let Some(b) = near.into_iter().find(|&b| samples.maps_onto(a, b, plane, field)) {

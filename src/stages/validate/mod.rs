@@ -14,6 +14,7 @@ pub mod faces;
 mod quads;
 pub mod shape;
 pub mod support;
+mod whole_faces;
 
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Plane, PlaneIndex};

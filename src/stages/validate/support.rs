@@ -1,6 +1,7 @@
 //! Surface support: the share of a surface that an isometry maps onto the surface.
 
 use super::quads::{Quads, is_near};
+use super::whole_faces::WholeFaces;
 use crate::brep::PlacedFaceId;
 use crate::brep::sample::{Sample, sample_mesh};
 use crate::cancel::{Cancel, Cancelled};
@@ -12,8 +13,11 @@ use crate::stages::parse::Parsed;
 /// Every how many-th sample belongs to the first round, and to the first two.
 const STRIDES: [usize; 2] = [40, 5];
 
+/// Images of whole faces may be off by this share of the radius.
+const SAME: f64 = 0.05;
+
 /// Faces with fewer samples are asked sample by sample.
-const FEW: usize = 4;
+const FEW: usize = 2;
 
 /// The surface of a model, ready to be asked whether points lie on it.
 #[derive(Clone, Debug)]
@@ -21,6 +25,7 @@ pub struct SurfaceField {
     /// Triangles under the number of their face.
     tree: Bvh,
     quads: Quads,
+    whole: WholeFaces,
     /// In an order in which every beginning is spread over the surface (as far as the rounds go).
     samples: Vec<Sample>,
     /// Samples in the first, first two, and all rounds.
@@ -64,7 +69,17 @@ impl SurfaceField {
         let samples = order.iter().map(|&i| samples[i]).collect();
         let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
         let (radius, agreeing) = (parsed.measures.tolerance.length(share), Neighbours::within(cosine, !oriented));
-        Self { tree, quads: Quads::of(mesh), samples, rounds, radius, cosine, agreeing, oriented }
+        Self {
+            tree,
+            quads: Quads::of(mesh),
+            whole: WholeFaces::of(mesh, SAME * radius),
+            samples,
+            rounds,
+            radius,
+            cosine,
+            agreeing,
+            oriented,
+        }
     }
 
     /// The samples of a round and those before it.
@@ -133,8 +148,12 @@ impl SurfaceField {
         for chunk in samples.chunks(4096) {
             cancel.check()?;
             for of_face in chunk.chunk_by(|a, b| a.face == b.face) {
-                hits += if of_face.len() >= FEW && self.maps_quad(isometry, &of_face[0], &mut recent) {
-                    of_face.len()
+                let (first, count) = (&of_face[0], of_face.len());
+                hits += if count >= FEW
+                    && (self.whole.maps(isometry, first.face, !self.oriented)
+                        || self.maps_quad(isometry, first, &mut recent))
+                {
+                    count
                 } else {
                     of_face.iter().filter(|s| self.maps(isometry, s, &mut recent)).count()
                 };
