@@ -91,7 +91,7 @@ impl Transform {
     fn new(mesh: &Mesh, samples: Vec<Sample>, measures: &Measures, axes: [Vector; 3]) -> Self {
         let (centroid, size) = (measures.centroid, measures.tolerance.size());
         let grid = Grid::new(&samples, axes, centroid, 1.1 * size / CELLS as f64);
-        let tree = Bvh::new((0..mesh.triangles.len()).map(|t| (mesh.corners(t), t as u32)));
+        let tree = Bvh::new(mesh.triangles.len(), (0..mesh.triangles.len()).map(|t| (mesh.corners(t), t as u32)));
         Self { samples, grid, tree, covariance: cpca::covariance(mesh), centroid, size }
     }
 

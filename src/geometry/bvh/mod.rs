@@ -129,9 +129,10 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// The tree over `triangles`, each with the caller's number; triangles without area are left out.
-    pub fn new(triangles: impl IntoIterator<Item = ([Point; 3], u32)>) -> Self {
-        let triangles: Vec<_> = triangles.into_iter().filter_map(|(corners, id)| Triangle::new(corners, id)).collect();
+    /// The tree over some `count` triangles, each with the caller's number; triangles without area are left out.
+    pub fn new(count: usize, corners: impl IntoIterator<Item = ([Point; 3], u32)>) -> Self {
+        let mut triangles = Vec::with_capacity(count);
+        triangles.extend(corners.into_iter().filter_map(|(corners, id)| Triangle::new(corners, id)));
         let bounds = Aabb::of(triangles.iter().flat_map(|t| &t.corners));
         if bounds.is_empty() {
             return Self::default();
@@ -303,7 +304,7 @@ mod tests {
         // Far from the origin, where single precision has nothing left of the distances.
         let off = Vector::new(1e6, -3e5, 7e5);
         let triangles: Vec<_> = sheet(12).into_iter().map(|(t, id)| (t.map(|p| p + off), id)).collect();
-        let tree = Bvh::new(triangles.clone());
+        let tree = Bvh::new(0, triangles.clone());
         let (mut first, mut second) = (0, Recent::default());
         for i in 0..200 {
             let p = Point::new(i as f64 * 0.07, (i * i % 97) as f64 * 0.12, (i % 5) as f64 * 0.3) + off;
@@ -317,7 +318,7 @@ mod tests {
 
     #[test]
     fn triangles_that_are_not_accepted_do_not_count() {
-        let tree = Bvh::new(sheet(3));
+        let tree = Bvh::new(18, sheet(3));
         let p = Point::new(0.1, 0.1, 0.5);
         assert!(tree.any_around(&around(&p, 1.0), &mut Recent::default(), |t| t.normal.z > 0.0));
         assert!(!tree.any_around(&around(&p, 1.0), &mut Recent::default(), |t| t.normal.z < 0.0));
@@ -330,7 +331,7 @@ mod tests {
     #[test]
     fn triangles_in_one_place_make_a_tree_too() {
         let heap: Vec<_> = (0..1000).map(|i| (sheet(1)[0].0, i)).collect();
-        let tree = Bvh::new(heap);
+        let tree = Bvh::new(1000, heap);
         assert!(tree.any_around(&around(&Point::new(0.2, 0.2, 0.1), 0.2), &mut Recent::default(), |t| t.id == 999));
     }
 }

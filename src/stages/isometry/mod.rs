@@ -12,9 +12,9 @@ mod axes;
 pub mod mirror;
 
 use crate::cancel::Cancel;
-use crate::geometry::{Chirality, Isometry, Plane};
+use crate::geometry::{Chirality, Isometry, Plane, Point};
 use crate::stages::corner_filter::Outline;
-use crate::stages::pair_match::{Correspondence, FacePair, Matches, Order};
+use crate::stages::pair_match::{Corners, Correspondence, FacePair, Matches, Order};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
 
@@ -124,14 +124,17 @@ pub fn isometry(
     let size = parsed.measures.tolerance.size();
     let mut mirrors = Vec::new();
     let mut repeated = vec![Repeated::default(); outlines.len()];
+    let mut corners = Corners::default();
     for (i, pair) in matches.pairs.iter().enumerate() {
+        corners.clear();
+        corners.add(pair, outlines);
         if i % 1024 == 0 {
             cancel.check().map_err(|c| ModelError::cancelled(Stage::Isometry, c))?;
         }
-        mirrors.extend(mirror_of(outlines, pair, i as u32, size, options));
+        mirrors.extend(mirror_of(outlines, (i as u32, pair), &corners, size, options));
         let [a, b] = pair.faces.map(|f| f as usize);
         let known = |f: usize| repeated[f].shifted && repeated[f].turned;
-        if let Some(by) = (!(known(a) && known(b))).then(|| direct(outlines, pair, size, options)).flatten() {
+        if let Some(by) = (!(known(a) && known(b))).then(|| direct(outlines, pair, &corners, size, options)).flatten() {
             for face in [a, b] {
                 repeated[face].shifted |= by == Direct::Shift;
                 repeated[face].turned |= by == Direct::Turn;
@@ -149,7 +152,13 @@ pub fn isometry(
 }
 
 /// The mirror plane of a pair, if its corners have one.
-fn mirror_of(outlines: &[Outline], pair: &FacePair, index: u32, size: f64, options: &Options) -> Option<Candidate> {
+fn mirror_of(
+    outlines: &[Outline],
+    (index, pair): (u32, &FacePair),
+    Corners { from, to }: &Corners,
+    size: f64,
+    options: &Options,
+) -> Option<Candidate> {
     let [a, b] = pair.faces.map(|i| &outlines[i as usize]);
     let single = pair.faces[0] == pair.faces[1];
     if single && !options.single_faces {
@@ -170,12 +179,11 @@ fn mirror_of(outlines: &[Outline], pair: &FacePair, index: u32, size: f64, optio
     if pair.order() == Some(Order::Same) && a.oriented && b.oriented && !options.umeyama {
         return None;
     }
-    let (from, to) = pair.corners(outlines);
     let (plane, squared) = if options.umeyama {
-        let (isometry, squared) = Isometry::fit(&from, &to, Chirality::Improper)?;
+        let (isometry, squared) = Isometry::fit(from, to, Chirality::Improper)?;
         (mirror::plane_of(&isometry, options.residual)?, squared)
     } else {
-        let fit = mirror::fit(&from, &to, (options.residual * size).powi(2))?;
+        let fit = mirror::fit(from, to, (options.residual * size).powi(2))?;
         (fit.gap >= options.eigen_gap).then_some((fit.plane, fit.squared))?
     };
     let source = if single { Source::SingleFace } else { Source::Corners };
@@ -193,8 +201,23 @@ enum Direct {
 /// Sine of the angle up to which a turn is none.
 const NO_TURN: f64 = 1e-3;
 
+/// Corners that are shifted to within this share of D need no fit to tell that nothing is turned.
+const EXACT: f64 = 1e-9;
+
+/// Whether all points are shifted alike.
+fn is_shifted(from: &[Point], to: &[Point], tolerance: f64) -> bool {
+    let shift = to[0] - from[0];
+    from.iter().zip(to).all(|(p, q)| (q - p - shift).amax() <= tolerance)
+}
+
 /// The direct isometry that maps the first face of the pair to the second, if one does.
-fn direct(outlines: &[Outline], pair: &FacePair, size: f64, options: &Options) -> Option<Direct> {
+fn direct(
+    outlines: &[Outline],
+    pair: &FacePair,
+    Corners { from, to }: &Corners,
+    size: f64,
+    options: &Options,
+) -> Option<Direct> {
     if !pair.is_of_two() || pair.order() == Some(Order::Reversed) {
         return None;
     }
@@ -203,8 +226,10 @@ fn direct(outlines: &[Outline], pair: &FacePair, size: f64, options: &Options) -
         let [a, b] = pair.faces.map(|f| outlines[f as usize].axis);
         return Some(kind(a.zip(b).is_some_and(|(p, q)| p.direction.cross(&q.direction).norm() > NO_TURN)));
     }
-    let (from, to) = pair.corners(outlines);
-    let (isometry, squared) = Isometry::fit(&from, &to, Chirality::Proper)?;
+    if from.len() >= 3 && is_shifted(from, to, EXACT * size) {
+        return Some(Direct::Shift);
+    }
+    let (isometry, squared) = Isometry::fit(from, to, Chirality::Proper)?;
     let turned = (isometry.rotation - crate::geometry::Matrix::identity()).norm() > NO_TURN;
     (squared.max(0.0).sqrt() <= options.residual * size).then(|| kind(turned))
 }

@@ -28,7 +28,7 @@ pub use crate::geometry::Axis;
 use crate::geometry::{Plane, PlaneIndex};
 use crate::stages::corner_filter::Outline;
 use crate::stages::isometry::{Repeats, Source, mirror};
-use crate::stages::pair_match::Matches;
+use crate::stages::pair_match::{Corners, Matches};
 use crate::stages::parse::Parsed;
 use crate::stages::validate::support::Round;
 use crate::stages::validate::{Validated, ValidatedPlane};
@@ -241,10 +241,10 @@ impl Merger<'_> {
         let (mut plane, mut residual) = (validated.plane, validated.residual);
         let exact = self.parsed.measures.tolerance.length(1e-6);
         if residual > exact && validated.pairs.len() > 1 {
-            let pairs = validated.pairs.iter().map(|&i| &self.matches.pairs[i as usize]);
-            let (from, to): (Vec<_>, Vec<_>) = pairs.map(|p| p.corners(self.outlines)).unzip();
-            if let Some(fit) =
-                mirror::fit(&from.concat(), &to.concat(), residual.powi(2)).filter(|f| f.squared.sqrt() <= residual)
+            let mut corners = Corners::default();
+            validated.pairs.iter().for_each(|&i| corners.add(&self.matches.pairs[i as usize], self.outlines));
+            if let Some(fit) = mirror::fit(&corners.from, &corners.to, residual.powi(2))
+                && fit.squared.sqrt() <= residual
             {
                 (plane, residual) = (fit.plane, fit.squared.sqrt());
             }

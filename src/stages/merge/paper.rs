@@ -3,6 +3,7 @@
 use super::{Merger, SymmetryPlane};
 use crate::cancel::Cancelled;
 use crate::geometry::{Aabb, Plane, Point};
+use crate::stages::pair_match::Corners;
 use crate::stages::validate;
 use crate::stages::validate::ValidatedPlane;
 use crate::stages::validate::faces::FaceSamples;
@@ -74,7 +75,7 @@ fn groups<'a>(merger: &Merger<'a>) -> Result<Vec<Group<'a>>, Cancelled> {
 
 fn barycentre(merger: &Merger, validated: &ValidatedPlane) -> Point {
     let pairs = validated.pairs.iter().map(|&p| merger.matches.pairs[p as usize].corners(merger.outlines));
-    let corners: Vec<_> = pairs.flat_map(|(a, b)| a.into_iter().chain(b)).collect();
+    let corners: Vec<_> = pairs.flat_map(|Corners { from, to }| from.into_iter().chain(to)).collect();
     crate::geometry::isometry::mean(&corners)
 }
 

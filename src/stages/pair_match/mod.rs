@@ -112,18 +112,10 @@ pub struct FacePair {
 
 impl FacePair {
     /// The corresponding corners of the first and the second face.
-    pub fn corners(&self, outlines: &[Outline]) -> (Vec<Point>, Vec<Point>) {
-        let [a, b] = self.faces.map(|i| &outlines[i as usize].corners);
-        match &self.correspondence {
-            Correspondence::Cyclic { offset, order } => {
-                let images = (0..a.len()).map(|k| b[cyclic::position(k, *offset as usize, *order, b.len())]);
-                (a.clone(), images.collect())
-            }
-            Correspondence::Listed { corners, .. } => {
-                corners.iter().map(|&(i, j)| (a[i as usize], b[j as usize])).unzip()
-            }
-            Correspondence::Centroids => (Vec::new(), Vec::new()),
-        }
+    pub fn corners(&self, outlines: &[Outline]) -> Corners {
+        let mut corners = Corners::default();
+        corners.add(self, outlines);
+        corners
     }
 
     /// Whether the two are different faces.
@@ -136,6 +128,39 @@ impl FacePair {
         match &self.correspondence {
             Correspondence::Cyclic { order, .. } | Correspondence::Listed { order, .. } => Some(*order),
             Correspondence::Centroids => None,
+        }
+    }
+}
+
+/// Corresponding corners of pairs of faces: those of the first, and of the second in the same order.
+#[derive(Clone, Debug, Default)]
+pub struct Corners {
+    /// Of the first face.
+    pub from: Vec<Point>,
+    /// Of the second.
+    pub to: Vec<Point>,
+}
+
+impl Corners {
+    /// Forgets the corners and keeps the memory.
+    pub fn clear(&mut self) {
+        self.from.clear();
+        self.to.clear();
+    }
+
+    /// Adds the corners of a pair; none where only centroids correspond.
+    pub fn add(&mut self, pair: &FacePair, outlines: &[Outline]) {
+        let [a, b] = pair.faces.map(|i| &outlines[i as usize].corners);
+        match &pair.correspondence {
+            Correspondence::Cyclic { offset, order } => {
+                self.from.extend_from_slice(a);
+                self.to.extend((0..a.len()).map(|k| b[cyclic::position(k, *offset as usize, *order, b.len())]));
+            }
+            Correspondence::Listed { corners, .. } => {
+                self.from.extend(corners.iter().map(|&(i, _)| a[i as usize]));
+                self.to.extend(corners.iter().map(|&(_, j)| b[j as usize]));
+            }
+            Correspondence::Centroids => {}
         }
     }
 }

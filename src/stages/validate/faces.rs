@@ -118,7 +118,12 @@ impl<'a> FaceSamples<'a> {
 
     /// Whether the mirrored samples of one face lie on the other.
     fn lies_on(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> bool {
-        let faces = &self.outlines[b as usize].faces;
+        let [from, faces] = [a, b].map(|i| &self.outlines[i as usize].faces);
+        if let ([one], [other]) = (&from[..], &faces[..])
+            && field.maps_onto(&plane.reflection(), *one, *other)
+        {
+            return true;
+        }
         let far = self.options.distance_max * self.size;
         let near = far.min(self.options.distance_95 * self.size);
         let samples = self.of(a);

@@ -2,8 +2,8 @@
 
 use super::quads::{Quads, is_near};
 use super::whole_faces::WholeFaces;
-use crate::brep::PlacedFaceId;
 use crate::brep::sample::{Sample, sample_mesh};
+use crate::brep::{Mesh, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::bvh::{Around, Bvh, Nearest, Recent};
 use crate::geometry::sides::Neighbours;
@@ -55,18 +55,8 @@ impl SurfaceField {
     /// Samples the mesh of a model at about `count` points; `share` of D is the distance within which they agree.
     pub fn new(parsed: &Parsed, count: usize, share: f64, cosine: f64) -> Self {
         let mesh = &parsed.mesh;
-        let face_triangles = |i: usize| {
-            let triangles = mesh.triangles_of(PlacedFaceId(i as u32));
-            triangles.map(move |t| (mesh.corners(t), i as u32))
-        };
-        let tree = Bvh::new((0..mesh.faces.len()).flat_map(face_triangles));
-        let samples = sample_mesh(mesh, count);
-        let round = |i: usize| STRIDES.iter().position(|s| i.is_multiple_of(*s)).unwrap_or(STRIDES.len());
-        let mut order: Vec<_> = (0..samples.len()).collect();
-        order.sort_by_key(|&i| round(i));
-        let upto = |r: usize| order.partition_point(|&i| round(i) <= r);
-        let rounds = [upto(0), upto(1), upto(2)];
-        let samples = order.iter().map(|&i| samples[i]).collect();
+        let tree = Bvh::new(mesh.triangles.len(), numbered_triangles(mesh));
+        let (samples, rounds) = in_rounds(&sample_mesh(mesh, count));
         let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
         let (radius, agreeing) = (parsed.measures.tolerance.length(share), Neighbours::within(cosine, !oriented));
         Self {
@@ -162,6 +152,11 @@ impl SurfaceField {
         Ok(hits)
     }
 
+    /// Whether the isometry maps a whole face onto another (or itself).
+    pub fn maps_onto(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId) -> bool {
+        self.whole.maps_onto(isometry, a, b, !self.oriented)
+    }
+
     /// Whether the whole face of a sample is mapped onto one other, which can be told of a quadrilateral by its corners.
     fn maps_quad(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
         let Some(corners) = self.quads.get(sample.face) else { return false };
@@ -190,6 +185,23 @@ impl SurfaceField {
         let share = hits as f64 / samples.len().max(1) as f64;
         (share >= needed || samples.is_empty()).then_some(share)
     }
+}
+
+/// The triangles of a mesh with the number of their face.
+fn numbered_triangles(mesh: &Mesh) -> impl Iterator<Item = ([Point; 3], u32)> {
+    (0..mesh.faces.len() as u32)
+        .flat_map(move |i| mesh.triangles_of(PlacedFaceId(i)).map(move |t| (mesh.corners(t), i)))
+}
+
+/// Samples in the order of their rounds, and how many there are up to the end of each.
+fn in_rounds(samples: &[Sample]) -> (Vec<Sample>, [usize; 3]) {
+    let round = |i: usize| STRIDES.iter().position(|s| i.is_multiple_of(*s)).unwrap_or(STRIDES.len());
+    let mut ordered = Vec::with_capacity(samples.len());
+    let ends = std::array::from_fn(|r| {
+        ordered.extend((0..samples.len()).filter(|&i| round(i) == r).map(|i| samples[i]));
+        ordered.len()
+    });
+    (ordered, ends)
 }
 
 /// Whether the triangles enclose the volume of the solids: where faces are turned inside out they do not, and normals

@@ -45,22 +45,29 @@ impl WholeFaces {
         Self { centroids, faces, points, radius }
     }
 
-    /// Whether the isometry maps a face onto one other; with `both`, that may be turned inside out.
+    /// Whether the isometry maps a face onto one other (or itself); with `both`, that may be turned inside out.
     pub fn maps(&self, isometry: &Isometry, id: PlacedFaceId, both: bool) -> bool {
-        let face = &self.faces[id.index()];
-        let points = self.points_of(face);
-        if points.is_empty() {
-            return false;
-        }
-        let normals = isometry.rotation * face.normals;
         let centroid = isometry.apply(self.centroids.point(id.0));
-        self.centroids.near(&centroid, self.radius).map(|b| &self.faces[b as usize]).any(|other| {
-            (face.area - other.area).abs() <= AREA * face.area
-                && other.points.len() == points.len()
-                && ((normals - other.normals).norm() <= NORMALS * face.area
-                    || (both && (normals + other.normals).norm() <= NORMALS * face.area))
-                && self.meet(isometry, points, self.points_of(other))
-        })
+        let mut near = self.centroids.near(&centroid, self.radius);
+        near.any(|other| self.is_image(isometry, id, PlacedFaceId(other), both))
+    }
+
+    /// Whether the isometry maps face `a` onto face `b`.
+    pub fn maps_onto(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId, both: bool) -> bool {
+        let centroid = isometry.apply(self.centroids.point(a.0));
+        (self.centroids.point(b.0) - centroid).norm() <= self.radius && self.is_image(isometry, a, b, both)
+    }
+
+    /// The same of faces with matching centroids.
+    fn is_image(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId, both: bool) -> bool {
+        let (face, other) = (&self.faces[a.index()], &self.faces[b.index()]);
+        let (points, others) = (self.points_of(face), self.points_of(other));
+        let normals = isometry.rotation * face.normals;
+        let differ = |other: Vector| (normals - other).norm() > NORMALS * face.area;
+        (face.area - other.area).abs() <= AREA * face.area
+            && points.len() == others.len()
+            && (!differ(other.normals) || (both && !differ(-other.normals)))
+            && self.meet(isometry, points, others)
     }
 
     fn points_of(&self, face: &Face) -> &[Point] {
@@ -83,5 +90,52 @@ impl WholeFaces {
             last = found.unwrap_or(last);
             found.is_some()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::{FaceId, MeshFace};
+    use crate::geometry::Plane;
+
+    /// Faces of one triangle each.
+    fn mesh(triangles: &[[[f64; 3]; 3]]) -> Mesh {
+        let mut mesh = Mesh::default();
+        for (i, corners) in (0..).zip(triangles) {
+            let corners = corners.map(Point::from);
+            let doubled = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+            mesh.points.extend(corners);
+            mesh.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+            mesh.faces.push(MeshFace {
+                face: FaceId(i),
+                occurrence: 0,
+                points: 3 * i..3 * i + 3,
+                triangles: i..i + 1,
+                area: 0.5 * doubled.norm(),
+                centroid: Point::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0),
+                flux: 0.0,
+            });
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_face_is_mapped_onto_its_image_alone() {
+        let right = [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+        // Mirrored in x = 0, the corners turned around and in another order.
+        let left = [[-1.0, 1.0, 0.0], [-3.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
+        let inside_out = [left[2], left[1], left[0]];
+        // The same area and nearly the same centroid, other corners.
+        let other = [[-1.0, 0.0, 0.0], [-3.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+        let mirror = Plane { normal: Vector::x(), offset: 0.0 }.reflection();
+        for (image, both, maps) in
+            [(left, false, true), (inside_out, false, false), (inside_out, true, true), (other, true, false)]
+        {
+            let faces = WholeFaces::of(&mesh(&[right, image]), 1e-3);
+            assert_eq!(faces.maps(&mirror, PlacedFaceId(0), both), maps);
+            assert_eq!(faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(1), both), maps);
+            assert!(!faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(0), both));
+        }
     }
 }
