@@ -6,7 +6,7 @@ use super::Merger;
 use crate::cancel::Cancelled;
 use crate::geometry::bvh::Recent;
 use crate::geometry::directions::half_sphere;
-use crate::geometry::{Plane, Vector, any_perpendicular};
+use crate::geometry::{Isometry, Plane, Vector, any_perpendicular};
 use crate::stages::validate::support::Round;
 
 /// Directions tried on half a circle, and on half a sphere: about 2 and 6 degrees apart.
@@ -33,7 +33,8 @@ impl Open {
         let mut rated = Vec::new();
         for direction in self.directions() {
             merger.cancel.check()?;
-            rated.extend(missed(merger, &direction).map(|missed| (missed, direction)));
+            let plane = Plane::through(&merger.parsed.measures.centroid, &direction);
+            rated.extend(missed(merger, &plane.reflection()).map(|missed| (missed, direction)));
         }
         // Stable: equal ones stay in their order.
         rated.sort_by_key(|r| r.0);
@@ -60,17 +61,16 @@ impl Open {
     }
 }
 
-/// How many of some samples have no mirror image near the surface; `None` as soon as they are too many.
-fn missed(merger: &Merger, normal: &Vector) -> Option<usize> {
+/// How many of some samples have no image near the surface; `None` as soon as they are too many.
+pub(super) fn missed(merger: &Merger, isometry: &Isometry) -> Option<usize> {
     let (field, measures) = (&merger.validated.field, &merger.parsed.measures);
-    let plane = Plane::through(&measures.centroid, normal);
     let radius = measures.tolerance.length(RADIUS);
     let samples = field.samples(Round::Coarse);
     let asked = samples.iter().step_by((samples.len() / SAMPLES).max(1));
     let most = ((1.0 - SHARE) * asked.len() as f64) as usize;
     let (mut missed, mut recent) = (0, Recent::default());
     for sample in asked {
-        let (p, normal) = (plane.reflect(&sample.point), plane.reflect_vector(&sample.normal));
+        let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
         missed += usize::from(!field.touches((&p, &normal), radius, &mut recent, |_| true));
         if missed > most {
             return None;

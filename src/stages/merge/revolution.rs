@@ -1,5 +1,6 @@
 //! Bodies of revolution: their axis, and which of their infinitely many planes are reported.
 
+use super::open::missed;
 use super::principal::{candidate, polish};
 use super::{Merger, SymmetryPlane};
 use crate::cancel::Cancelled;
@@ -53,6 +54,8 @@ fn of_faces(merger: &Merger, fitted: &Axis) -> Option<Axis> {
 
 /// The fitted axis, made better as the line in which two polished planes through it meet.
 fn polished(merger: &Merger, fitted: &Axis) -> Option<Axis> {
+    // What does not nearly turn about the fitted axis turns about no other.
+    missed(merger, &rotation(fitted, TURNS[0]))?;
     let first = any_perpendicular(&fitted.direction);
     let plane = |n: &Vector| polish(merger, Plane::through(&fitted.point, n), 0.9, |_| true);
     let (p, q) = (plane(&first)?.0, plane(&fitted.direction.cross(&first))?.0);
