@@ -42,6 +42,8 @@ pub fn by_stage(seconds: &Seconds) -> Value {
 struct Clock {
     spent: Seconds,
     running: Option<(Stage, Instant)>,
+    /// Seconds of those in which the machine was not there for the run.
+    starved: f64,
     passed: Option<Passed>,
 }
 
@@ -95,10 +97,16 @@ impl Job {
         Some((stage, clock.spent.iter().sum::<f64>() + since.elapsed().as_secs_f64()))
     }
 
-    /// Cancels the model if it is computed on and takes more than `allowed`.
-    pub fn check(&self, allowed: Allowed) {
+    /// Cancels the model if it is computed on and takes more than `allowed`. Since the last check the run was `starved`
+    /// for some seconds, which do not count.
+    pub fn check(&self, allowed: Allowed, starved: f64) {
         let Some((_, seconds)) = self.running() else { return };
-        let passed = if seconds > allowed.time.as_secs_f64() {
+        let starved = {
+            let mut clock = self.clock();
+            clock.starved += starved;
+            clock.starved
+        };
+        let passed = if seconds - starved > allowed.time.as_secs_f64() {
             Passed::Time
         } else if self.cancel.account().bytes() > allowed.memory {
             Passed::Memory

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::guard::guarded;
@@ -33,6 +35,30 @@ pub struct Bench {
     allowed: Allowed,
     busy: [AtomicUsize; Stage::ALL.len()],
     in_flight: Mutex<BTreeMap<u64, Arc<Job>>>,
+    pace: Mutex<Pace>,
+}
+
+/// How much of the machine the run gets, from one look to the next.
+struct Pace {
+    wall: Instant,
+    processor: ProcessTime,
+}
+
+/// The least share of the time on the clock that counts as computing: what waits for nothing must end, too.
+const LEAST: f64 = 0.1;
+
+impl Pace {
+    fn start() -> Self {
+        Self { wall: Instant::now(), processor: ProcessTime::now() }
+    }
+
+    /// Seconds since the last look in which the run had less than one processor: others were served first.
+    fn starved(&mut self) -> f64 {
+        let last = std::mem::replace(self, Self::start());
+        let wall = (self.wall - last.wall).as_secs_f64();
+        let computed = self.processor.duration_since(last.processor).as_secs_f64();
+        (wall - computed).clamp(0.0, (1.0 - LEAST) * wall)
+    }
 }
 
 impl Bench {
@@ -43,7 +69,13 @@ impl Bench {
             // There is room for each of them: the channel was made that large.
             let _ = permits.0.try_send(());
         }
-        Self { permits, allowed, busy: Default::default(), in_flight: Mutex::default() }
+        Self {
+            permits,
+            allowed,
+            busy: Default::default(),
+            in_flight: Mutex::default(),
+            pace: Mutex::new(Pace::start()),
+        }
     }
 
     /// Runs a step of a model when a place is free; panics and passed limits become failures.
@@ -82,7 +114,9 @@ impl Bench {
 
     /// Cancels the models that passed a limit.
     pub fn check_limits(&self) {
-        self.jobs().values().for_each(|job| job.check(self.allowed));
+        // Two numbers: whole even if a holder panicked.
+        let starved = self.pace.lock().unwrap_or_else(PoisonError::into_inner).starved();
+        self.jobs().values().for_each(|job| job.check(self.allowed, starved));
     }
 
     /// Bytes that all models in flight take together.
@@ -135,7 +169,7 @@ impl Drop for Permit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::{Duration, Instant};
+    use std::time::Duration;
 
     fn bench(places: usize, seconds: f64) -> Bench {
         Bench::new(places, Allowed { time: Duration::from_secs_f64(seconds), memory: 1 << 20 })
