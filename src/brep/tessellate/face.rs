@@ -19,8 +19,11 @@ const RIM_SEGMENTS: usize = 24;
 const AREA_OFF: f64 = 0.015;
 /// Faces smaller than this share of the square of the model's size are not made again.
 const UNSEEN: f64 = 1e-6;
-/// How often a face is made again at most, each time with a quarter of the deflection.
+/// How often a face is made again at most, and the least share of the deflection each time.
 const REFINEMENTS: usize = 2;
+const FINER: f64 = 0.25;
+/// What is aimed for when a face is made again for the first time, as a share of the error that is taken.
+const AIM: f64 = 0.75;
 
 /// What all faces of a model need.
 pub(super) struct Context<'a> {
@@ -89,15 +92,18 @@ fn trimmed(
         return Ok(best);
     }
     let mut fineness = context.fineness;
-    for _ in 0..REFINEMENTS {
-        let off = error(&best, context);
+    let mut off = error(&best, context);
+    for round in 0..REFINEMENTS {
         if off <= 1.0 {
             break;
         }
-        fineness = Fineness { deflection: 0.25 * fineness.deflection, angle: 0.5 * fineness.angle };
+        // Errors shrink as the deflection does, unless the edges are too coarse.
+        let share = if round == 0 { (AIM / off).max(FINER) } else { FINER };
+        fineness = Fineness { deflection: share * fineness.deflection, angle: share.sqrt() * fineness.angle };
         let Ok(finer) = patch(chart, &mut paths, &fineness, false, reference) else { break };
-        if error(&finer, context) < off {
-            best = finer;
+        let finer_off = error(&finer, context);
+        if finer_off < off {
+            (best, off) = (finer, finer_off);
         }
     }
     Ok(best)

@@ -89,8 +89,7 @@ fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>) -> impl Iterato
         let ordered = [[a, b], [b, c], [c, a]].map(|[a, b]| [*a.min(b), *a.max(b)]);
         sides.extend(ordered.map(|side| (side, area / 3.0)));
     }
-    // Stable, so that equal sides are added up in one order.
-    sides.sort_by_key(|(side, _)| *side);
+    sides.sort_unstable_by_key(|([a, b], _)| u64::from(*a) << 32 | u64::from(*b));
     sides.dedup_by(|next, first| {
         let same = next.0 == first.0;
         first.1 += if same { next.1 } else { 0.0 };

@@ -4,17 +4,19 @@
 //! In: a [`Model`]. Out: a [`Mesh`] of all occurrences with exact areas, what was left out, and what was guessed.
 //!
 //! Method: every edge becomes one polyline. A face's loops, less its seams, are projected onto the surface, unwrapped
-//! over the periods and laid out as closed paths (`boundary`). Paths that go round the surface are wrapped into a
-//! strip that is cut open (`strip`). Polygons are cut into ears, straight-lined walls into strips; everything else
-//! is a constrained Delaunay triangulation with interior points by curvature, and the inside is found by the parity
-//! of crossings (`domain`). Edges that are too coarse for a narrow face are cut again (`refine`). Area, centroid
-//! and flux are integrals over the true trimmed surface (`integrate`).
+//! over the periods and laid out as closed paths (`boundary`). Level rings that go round the surface have rows of
+//! triangles between them (`bands`), other paths that go round it are wrapped into a strip that is cut open (`strip`).
+//! Polygons are cut into ears, straight-lined walls into strips; everything else is a constrained Delaunay
+//! triangulation with interior points by curvature, and the inside is found by the parity of crossings (`domain`).
+//! Edges that are too coarse for a narrow face are cut again (`refine`). Area, centroid and flux are integrals over
+//! the true trimmed surface (`integrate`).
 //!
 //! Cost: linear in edges and faces; a Delaunay face of n points takes O(n log n).
 //!
 //! It does not promise: that free-form silhouettes are nearer than the deflection; that a face whose edges do not
 //! lie on its surface has the right shape (it is filled with a plane, with a warning).
 
+mod bands;
 mod bending;
 mod boundary;
 mod chart;

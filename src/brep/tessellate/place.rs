@@ -148,13 +148,16 @@ fn add_chain(points: &mut Vec<(Point, f64)>, chain: &[Point]) {
 
 fn add_edge(points: &mut Vec<(Point, f64)>, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
     let [start, end] = model.ends(id);
-    let mut chain = vec![start];
-    if let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) {
-        let period = curve.period();
-        let at = |i: usize| from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
-        chain.extend((1..EDGE_SAMPLES).map(|i| curve.point(curve.wrap(at(i), period))));
-    }
-    chain.push(end);
+    let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) else {
+        return add_chain(points, &[start, end]);
+    };
+    let period = curve.period();
+    let at = |i: usize| from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
+    let chain: [Point; EDGE_SAMPLES + 1] = std::array::from_fn(|i| match i {
+        0 => start,
+        EDGE_SAMPLES => end,
+        _ => curve.point(curve.wrap(at(i), period)),
+    });
     add_chain(points, &chain);
 }
 

@@ -1,7 +1,7 @@
 //! The wall between two rings that go round a straight-lined surface once each: a strip that needs no cut.
 
 use super::boundary::{Path, rectangle};
-use super::chart::Chart;
+use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::edges::Fineness;
 use super::triangulate::zip;
@@ -22,24 +22,26 @@ pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Finene
     let (low, high) = if height(a) < height(b) { (a, b) } else { (b, a) };
     let mut patch = Patch::default();
     let [lower, upper] = [low, high].map(|p| add_ring(&mut patch, p, period, low.uv[0][0]));
-    let rising = |chain: &[u32]| chain.windows(2).all(|w| patch.uv[w[1] as usize][0] >= patch.uv[w[0] as usize][0]);
-    let around: Vec<Point2> = lower.iter().chain(upper.iter().rev()).map(|&i| patch.uv[i as usize].into()).collect();
-    let area = polygon::signed_area(&around);
-    if !rising(&lower) || !rising(&upper) || area <= 0.0 {
-        return None;
-    }
     let [_, _, v0, v1] = rectangle(patch.uv.iter());
     let steps = chart.steps([0.0, period, v0, v1], fineness)[0].max(3);
-    patch.triangles = zip(&patch.uv, &lower, &upper, area, WIDEST * period / steps as f64)?;
+    patch.triangles = wall(&patch.uv, &lower, &upper, WIDEST * period / steps as f64)?;
     // Going round in the direction of u, the lower ring has the face on its left.
     let side = |path: &Path| f64::from(if std::ptr::eq(path, low) { path.winding[0] } else { -path.winding[0] });
     patch.sides = vec![side(a), side(b)];
     Some(patch)
 }
 
+/// The triangles between two chains, where both run towards growing u and none is wider than `widest`.
+pub(super) fn wall(uv: &[Uv], lower: &[u32], upper: &[u32], widest: f64) -> Option<Vec<[u32; 3]>> {
+    let rising = |chain: &[u32]| chain.windows(2).all(|w| uv[w[1] as usize][0] >= uv[w[0] as usize][0]);
+    let around: Vec<Point2> = lower.iter().chain(upper.iter().rev()).map(|&i| uv[i as usize].into()).collect();
+    let area = polygon::signed_area(&around);
+    if rising(lower) && rising(upper) && area > 0.0 { zip(uv, lower, upper, area, widest) } else { None }
+}
+
 /// Adds a ring once round in the direction of growing u, the first point repeated at the end; it starts with the
 /// point nearest to `start`.
-fn add_ring(patch: &mut Patch, path: &Path, period: f64, start: f64) -> Vec<u32> {
+pub(super) fn add_ring(patch: &mut Patch, path: &Path, period: f64, start: f64) -> Vec<u32> {
     let n = path.uv.len();
     let beyond = |i: usize| path.uv[i][0] - start - period * ((path.uv[i][0] - start) / period).round();
     let first = (0..n).min_by(|&i, &j| beyond(i).abs().total_cmp(&beyond(j).abs())).unwrap_or(0);

@@ -3,6 +3,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::bands::band;
 use super::boundary::Path;
 use super::chart::{Chart, Uv};
 use super::domain::{Patch, crosses_below, fill};
@@ -28,6 +29,11 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
         .or_else(|| (0..2).find(|&a| chart.periods[a].is_some()))?;
     chart.periods[along]?;
     if quick && let Some(patch) = between_two_rings(chart, paths, fineness) {
+        return Some(patch);
+    }
+    if (quick || !chart.surface.is_ruled_along_v())
+        && let Some(patch) = band(chart, paths, fineness)
+    {
         return Some(patch);
     }
     let mut strip = Strip::new(chart, along, paths)?;
