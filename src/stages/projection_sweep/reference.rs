@@ -38,8 +38,24 @@ pub(super) fn find(
     } else {
         (cpca::axes(&parsed.mesh), Source::Cpca)
     };
+    if let Some(axis) = lone_axis(&parsed.mesh, &axes).filter(|_| source == Source::Cpca) {
+        return Ok(Reference { axis, origin: centroid, source });
+    }
     let axis = axes[smallest_shadow(parsed, &axes, options, cancel)?];
     Ok(Reference { axis, origin: centroid, source })
+}
+
+/// The principal axis along which the variance is another than along the two others, where it is the same along these,
+/// as about the axis of a propeller: any axes across it would be as good.
+fn lone_axis(mesh: &Mesh, axes: &[Vector; 3]) -> Option<Vector> {
+    let covariance = cpca::covariance(mesh);
+    let [a, b, c] = axes.map(|axis| axis.dot(&(covariance * axis)));
+    let equal = |p: f64, q: f64| (p - q).abs() <= ISOTROPIC * a.abs();
+    match (equal(a, b), equal(b, c)) {
+        (true, false) => Some(axes[2]),
+        (false, true) => Some(axes[0]),
+        _ => None,
+    }
 }
 
 fn smallest_shadow(
