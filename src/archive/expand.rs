@@ -9,6 +9,8 @@ pub const TOO_LARGE: &str = "it unpacks to more than the setting limits.expansio
 
 /// Archives may always unpack to this much, bytes.
 const FREE: u64 = 1 << 30;
+/// Bytes that are reserved before they have come at most: an archive may announce any number.
+const MOST_RESERVED: usize = 64 << 20;
 
 /// The decompressed bytes of `reader`.
 pub fn unpacked<'a>(packing: Packing, reader: impl Read + 'a) -> io::Result<Box<dyn Read + 'a>> {
@@ -87,6 +89,7 @@ pub fn read_limited(
         // One more than is expected, to see that it ends there.
         granted = expected.saturating_add(1).max(2 * granted).min(most);
         room(granted)?;
+        bytes.reserve_exact((granted as usize - bytes.len()).min(MOST_RESERVED));
         let part = reader.by_ref().take(granted - bytes.len() as u64).read_to_end(&mut bytes);
         part.map_err(|e| format!("cannot be read: {e}"))?;
     }

@@ -1,7 +1,5 @@
 //! The loops of a maximal face, without seams and poles, and their corners.
 
-use rustc_hash::FxHashMap;
-
 use super::edges::EdgeShapes;
 use super::{InnerLoop, LocalOutline};
 use crate::brep::{EdgeId, EdgeUse, FaceGeometry, FaceId, Model, Surface, VertexId};
@@ -46,9 +44,10 @@ pub(super) fn loops(model: &Model, group: &[FaceId], shapes: &EdgeShapes, corner
             uses.extend(face_loop.uses.iter().map(|&u| (u, face_loop.outer)));
         }
     }
-    let mut count: FxHashMap<EdgeId, usize> = FxHashMap::default();
-    uses.iter().for_each(|(u, _)| *count.entry(u.edge).or_default() += 1);
-    uses.retain(|(u, _)| count[&u.edge] == 1 && !shapes.is_degenerate(u.edge));
+    let mut edges: Vec<EdgeId> = uses.iter().map(|(u, _)| u.edge).collect();
+    edges.sort_unstable();
+    let once = |edge: EdgeId| edges.get(edges.partition_point(|e| *e < edge) + 1) != Some(&edge);
+    uses.retain(|(u, _)| once(u.edge) && !shapes.is_degenerate(u.edge));
     let chains = chains(model, &uses);
     chains.iter().map(|chain| boundary(chain, shapes, corner_angle)).collect()
 }
@@ -61,10 +60,10 @@ fn ends(model: &Model, edge_use: &EdgeUse) -> (VertexId, VertexId) {
 
 /// Chains uses head to tail. A chain that does not close (a broken file) is kept as it is.
 fn chains(model: &Model, uses: &[(EdgeUse, bool)]) -> Vec<Vec<(EdgeUse, bool)>> {
-    let mut from: FxHashMap<VertexId, Vec<usize>> = FxHashMap::default();
-    for (i, (edge_use, _)) in uses.iter().enumerate().rev() {
-        from.entry(ends(model, edge_use).0).or_default().push(i);
-    }
+    // Where uses start, and their positions.
+    let mut starts: Vec<(VertexId, usize)> =
+        uses.iter().enumerate().map(|(i, (edge_use, _))| (ends(model, edge_use).0, i)).collect();
+    starts.sort_unstable();
     let mut used = vec![false; uses.len()];
     let mut chains = Vec::new();
     for first in 0..uses.len() {
@@ -73,11 +72,9 @@ fn chains(model: &Model, uses: &[(EdgeUse, bool)]) -> Vec<Vec<(EdgeUse, bool)>> 
         while let Some(i) = next {
             used[i] = true;
             chain.push(uses[i]);
-            let leaving = from.get_mut(&ends(model, &uses[i].0).1);
-            next = leaving.and_then(|l| {
-                l.retain(|&j| !used[j]);
-                l.pop()
-            });
+            let end = ends(model, &uses[i].0).1;
+            let leaving = &starts[starts.partition_point(|s| s.0 < end)..];
+            next = leaving.iter().take_while(|s| s.0 == end).map(|s| s.1).find(|&j| !used[j]);
         }
         if !chain.is_empty() {
             chains.push(chain);
@@ -91,12 +88,12 @@ fn boundary(chain: &[(EdgeUse, bool)], shapes: &EdgeShapes, corner_angle: f64) -
     let last = chain[chain.len() - 1].0;
     let mut incoming = shapes.leaving(&last);
     for (edge_use, outer) in chain {
-        let points = shapes.points(edge_use);
+        let first = result.points.len();
+        shapes.add_points(edge_use, &mut result.points);
         if turn(&incoming, &shapes.entering(edge_use)) > corner_angle {
-            result.corners.extend(points.first());
+            result.corners.extend(result.points.get(first));
         }
         incoming = shapes.leaving(edge_use);
-        result.points.extend(points);
         result.length += shapes.length(edge_use.edge);
         result.outer |= outer;
     }

@@ -51,11 +51,11 @@ impl EdgeShapes {
         self.shapes[&edge].length
     }
 
-    /// Points along the use, without the last one.
-    pub fn points(&self, edge_use: &EdgeUse) -> Vec<Point> {
+    /// Adds the points along the use, without the last one.
+    pub fn add_points(&self, edge_use: &EdgeUse, out: &mut Vec<Point>) {
         let points = &self.shapes[&edge_use.edge].points;
         let last = points.len() - 1;
-        if edge_use.forward { points[..last].to_vec() } else { points[1..].iter().rev().copied().collect() }
+        if edge_use.forward { out.extend_from_slice(&points[..last]) } else { out.extend(points[1..].iter().rev()) }
     }
 
     /// Direction of travel at the beginning of the use.

@@ -1,7 +1,5 @@
 //! Maximal faces: adjacent faces that lie on one underlying surface, joined.
 
-use rustc_hash::FxHashMap;
-
 use crate::brep::{EdgeId, Face, FaceGeometry, FaceId, Model, Placement, Surface};
 use crate::cancel::{Cancel, Cancelled};
 
@@ -27,14 +25,19 @@ pub(super) fn groups(
 
 /// Positions of two faces that share an edge which no third face uses, in the order of the edges.
 fn adjacent(model: &Model, faces: &[FaceId]) -> Vec<(usize, usize)> {
-    let mut users: FxHashMap<EdgeId, Vec<usize>> = FxHashMap::default();
+    let mut users: Vec<(EdgeId, usize)> = Vec::new();
     for (i, face) in faces.iter().enumerate() {
-        for edge_use in model.faces[face.index()].loops.iter().flat_map(|l| &l.uses) {
-            users.entry(edge_use.edge).or_default().push(i);
-        }
+        let uses = model.faces[face.index()].loops.iter().flat_map(|l| &l.uses);
+        users.extend(uses.map(|u| (u.edge, i)));
     }
-    let mut pairs: Vec<_> =
-        users.into_values().filter(|u| u.len() == 2 && u[0] != u[1]).map(|u| (u[0], u[1])).collect();
+    users.sort_unstable();
+    let of_edges = users.chunk_by(|a, b| a.0 == b.0);
+    let mut pairs: Vec<_> = of_edges
+        .filter_map(|users| match users {
+            [(_, a), (_, b)] if a != b => Some((*a, *b)),
+            _ => None,
+        })
+        .collect();
     pairs.sort_unstable();
     pairs.dedup();
     pairs

@@ -39,8 +39,12 @@ pub(super) fn alike(p: &Outline, q: &Outline, size: f64) -> bool {
         && p.axis.is_some() == q.axis.is_some()
 }
 
-/// Lists the meetings of all buckets, smallest keys first.
-pub(super) fn plan(outlines: &[Outline], measures: &Measures, options: &Options) -> Vec<Bucket> {
+/// The meetings of each bucket, smallest keys first; listed one bucket after the other, as all together may be many.
+pub(super) fn plan<'a>(
+    outlines: &'a [Outline],
+    measures: &'a Measures,
+    options: &'a Options,
+) -> impl Iterator<Item = Bucket> + 'a {
     let size = measures.tolerance.size();
     let mut members: FxHashMap<Key, Vec<u32>> = FxHashMap::default();
     for (i, outline) in outlines.iter().enumerate() {
@@ -48,18 +52,17 @@ pub(super) fn plan(outlines: &[Outline], measures: &Measures, options: &Options)
     }
     let mut keys: Vec<_> = members.keys().copied().collect();
     keys.sort_unstable();
-    let distance = |i: u32| (outlines[i as usize].centroid - measures.centroid).norm();
+    let distance = move |i: u32| (outlines[i as usize].centroid - measures.centroid).norm();
     let extra = options.extra_corners as u32;
-    let bucket = |k: &Key| {
-        let own = &members[k];
+    keys.into_iter().map(move |k| {
+        let own = &members[&k];
         let subset = subset(own, distance, options.subset);
         let mut meetings = within(own, &subset);
-        for other in neighbours(k, extra).filter_map(|n| members.get(&n)) {
+        for other in neighbours(&k, extra).filter_map(|n| members.get(&n)) {
             meetings.extend(subset.iter().flat_map(|&a| other.iter().map(move |&b| (a, b))));
         }
         Bucket { meetings, weight: own.len() as f64 / subset.len() as f64 }
-    };
-    keys.iter().map(bucket).collect()
+    })
 }
 
 /// Keys that hold faces congruent to those of `k` in spite of the bins, each unordered pair of keys once.
@@ -144,11 +147,8 @@ mod tests {
         .measures;
         measures.tolerance = crate::geometry::Tolerance::of(1.0);
         let options = Options { subset: usize::MAX, ..Options::default() };
-        let met: std::collections::BTreeSet<_> = plan(&outlines, &measures, &options)
-            .into_iter()
-            .flat_map(|b| b.meetings)
-            .map(|(a, b)| (a.min(b), a.max(b)))
-            .collect();
+        let met: std::collections::BTreeSet<_> =
+            plan(&outlines, &measures, &options).flat_map(|b| b.meetings).map(|(a, b)| (a.min(b), a.max(b))).collect();
         let corners = |i: u32| outlines[i as usize].corners.len();
         let (mut alike_pairs, mut missed) = (0, 0);
         for a in 0..outlines.len() as u32 {

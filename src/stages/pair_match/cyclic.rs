@@ -12,10 +12,17 @@ pub(super) fn position(k: usize, offset: usize, order: Order, n: usize) -> usize
     }
 }
 
-/// Distances between consecutive points of the closed loop.
-fn sides(corners: &[Point]) -> Vec<f64> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(p, q)| (q - p).norm()).collect()
+/// Corners of a closed loop and the distances between consecutive ones, measured once for all its pairs.
+pub(super) struct Loop<'a> {
+    corners: &'a [Point],
+    sides: Vec<f64>,
+}
+
+impl<'a> Loop<'a> {
+    pub fn new(corners: &'a [Point]) -> Self {
+        let next = corners.iter().cycle().skip(1);
+        Self { corners, sides: corners.iter().zip(next).map(|(p, q)| (q - p).norm()).collect() }
+    }
 }
 
 /// How correspondences are looked for.
@@ -30,22 +37,22 @@ impl Search<'_> {
     /// Shows `keep` every correspondence in the given order whose sum is within the limit.
     pub(super) fn matches(
         &self,
-        a: &[Point],
-        b: &[Point],
+        a: &Loop,
+        b: &Loop,
         order: Order,
         keep: &mut impl FnMut(Correspondence),
     ) -> Result<(), Cancelled> {
-        let (p, q) = (sides(a), sides(b));
+        let (p, q) = (&a.sides, &b.sides);
         if p.len() == q.len() {
             let total = self.limit * p.len() as f64;
             for offset in 0..q.len() {
                 self.cancel.check()?;
-                if difference(&p, &q, offset, order, total, self.options.absolute) <= total {
+                if difference(p, q, offset, order, total, self.options.absolute) <= total {
                     keep(Correspondence::Cyclic { offset: offset as u32, order });
                 }
             }
         } else if p.len().abs_diff(q.len()) <= self.options.extra_corners {
-            self.subsequences(a, b, order, keep)?;
+            self.subsequences(a.corners, b.corners, order, keep)?;
         }
         Ok(())
     }
@@ -78,10 +85,18 @@ impl Search<'_> {
 fn difference(p: &[f64], q: &[f64], offset: usize, order: Order, limit: f64, absolute: bool) -> f64 {
     let n = p.len();
     // Side k runs from corner k to k + 1; reversed, it is met from its other end.
-    let first = if order == Order::Same { offset } else { offset + n - 1 };
+    match order {
+        Order::Same => sum_of_differences(p, q[offset..].iter().chain(&q[..offset]), limit, absolute),
+        Order::Reversed => {
+            let behind = (offset + n - 1) % n + 1;
+            sum_of_differences(p, q[..behind].iter().rev().chain(q[behind..].iter().rev()), limit, absolute)
+        }
+    }
+}
+
+fn sum_of_differences<'a>(p: &[f64], q: impl Iterator<Item = &'a f64>, limit: f64, absolute: bool) -> f64 {
     let mut sum = 0.0;
-    for (k, side) in p.iter().enumerate() {
-        let other = q[position(k, first % n, order, n)];
+    for (side, other) in p.iter().zip(q) {
         sum += if absolute { (side - other).abs() } else { side - other };
         if absolute && sum > limit {
             break;
@@ -133,7 +148,7 @@ mod tests {
     fn found(a: &[Point], b: &[Point], order: Order, options: &Options) -> Vec<Correspondence> {
         let mut all = Vec::new();
         let search = Search { limit: 1e-3, options, cancel: &Cancel::new() };
-        search.matches(a, b, order, &mut |c| all.push(c)).unwrap();
+        search.matches(&Loop::new(a), &Loop::new(b), order, &mut |c| all.push(c)).unwrap();
         all
     }
 
@@ -169,7 +184,8 @@ mod tests {
         let search = Search { limit: 1e-3, options: &options, cancel: &cancel };
         let loops = [3, 4].map(|n| (0..n).map(|i| Point::new(f64::from(i), 0.0, 0.0)).collect::<Vec<_>>());
         for other in &loops {
-            assert!(search.matches(&loops[0], other, Order::Same, &mut |_| panic!("found one")).is_err());
+            let [first, other] = [&loops[0], other].map(|corners| Loop::new(corners));
+            assert!(search.matches(&first, &other, Order::Same, &mut |_| panic!("found one")).is_err());
         }
     }
 

@@ -187,15 +187,15 @@ pub fn pair_match(
     let size = parsed.measures.tolerance.size();
     let mut matcher = Matcher {
         outlines,
+        loops: outlines.iter().map(|outline| cyclic::Loop::new(&outline.corners)).collect(),
         options,
         cancel,
         size,
         room: options.pairs_per_face.saturating_mul(outlines.len()).max(4096),
         matches: Matches::default(),
     };
-    let plan = buckets::plan(outlines, &parsed.measures, options);
-    for bucket in &plan {
-        matcher.bucket(bucket).map_err(|c| ModelError::cancelled(Stage::PairMatch, c))?;
+    for bucket in buckets::plan(outlines, &parsed.measures, options) {
+        matcher.bucket(&bucket).map_err(|c| ModelError::cancelled(Stage::PairMatch, c))?;
     }
     Ok(matcher.matches)
 }
@@ -203,6 +203,8 @@ pub fn pair_match(
 /// Collects the matches of one model.
 struct Matcher<'a> {
     outlines: &'a [Outline],
+    /// Their corners.
+    loops: Vec<cyclic::Loop<'a>>,
     options: &'a Options,
     cancel: &'a Cancel,
     size: f64,
@@ -253,7 +255,7 @@ impl Matcher<'_> {
             if order == Order::Same && a == b && !both {
                 continue;
             }
-            search.matches(&p.corners, &q.corners, order, &mut keep)?;
+            search.matches(&self.loops[a as usize], &self.loops[b as usize], order, &mut keep)?;
         }
         Ok(())
     }
