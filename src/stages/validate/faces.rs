@@ -6,7 +6,7 @@ use super::Options;
 use super::shape::{histogram_correlation, wasserstein};
 use super::support::SurfaceField;
 use crate::brep::sample::sample_face;
-use crate::geometry::bvh::Recent;
+use crate::geometry::bvh::{Recent, nearest_on_triangle};
 use crate::geometry::{Plane, Point, Vector};
 use crate::stages::corner_filter::Outline;
 use crate::stages::parse::Parsed;
@@ -127,11 +127,17 @@ impl<'a> FaceSamples<'a> {
         let far = self.options.distance_max * self.size;
         let near = far.min(self.options.distance_95 * self.size);
         let samples = self.of(a);
+        let target = &self.outlines[b as usize];
+        let small = target.area <= SMALL * near * near;
         let (mut outside, mut recent) = (0, Recent::default());
         for (p, n) in samples.iter() {
             let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
-            let mut within =
-                |radius| field.touches((&image, &normal), radius, &mut recent, |f| faces.binary_search(&f).is_ok());
+            let mut within = |radius| {
+                if small {
+                    return self.is_on(target, (&image, &normal), radius, field);
+                }
+                field.touches((&image, &normal), radius, &mut recent, |f| faces.binary_search(&f).is_ok())
+            };
             if within(near) {
                 continue;
             }
@@ -142,7 +148,18 @@ impl<'a> FaceSamples<'a> {
         }
         true
     }
+
+    /// Whether an outline has a point within `radius` of `p` with this normal, triangle by triangle.
+    fn is_on(&self, outline: &Outline, (p, normal): (&Point, &Vector), radius: f64, field: &SurfaceField) -> bool {
+        let mesh = &self.parsed.mesh;
+        outline.faces.iter().flat_map(|&f| mesh.triangles_of(f)).any(|t| {
+            (nearest_on_triangle(p, &mesh.corners(t)) - p).norm_squared() <= radius * radius
+                && mesh.doubled_normal(t).try_normalize(0.0).is_some_and(|n| field.agree(&n, normal))
+        })
+    }
 }
 
+/// Up to this share of the radius squared the area of a face is small: the tree would show all that is around it.
+const SMALL: f64 = 4.0;
 /// Faces with more inner loops (a plate with hundreds of holes) are judged by their surfaces alone.
 const INNER: usize = 256;
