@@ -21,26 +21,40 @@ struct Place {
     share: f64,
 }
 
-/// `count` points equally spaced by arc length, counter-clockwise, from where the half axis from `centre` meets the
-/// contour last; where it does not meet it, from the point seen nearest to that direction.
-pub fn resampled(contour: &Contour, centre: [f64; 2], start: Start, count: usize) -> Vec<[f64; 2]> {
-    let points = &contour.points;
-    let n = points.len();
-    let place = last_crossing(points, centre, start).unwrap_or_else(|| nearest_in_direction(points, centre, start));
-    let length = |i: usize| distance(points[i % n], points[(i + 1) % n]);
-    let step = (0..n).map(length).sum::<f64>() / count as f64;
-    let (mut side, mut along) = (place.side, place.share * length(place.side));
-    let mut resampled = Vec::with_capacity(count);
-    for _ in 0..count {
-        while along > length(side) && side < place.side + 2 * n {
-            along -= length(side);
-            side += 1;
-        }
-        let share = if length(side) > 0.0 { along / length(side) } else { 0.0 };
-        resampled.push(between(points[side % n], points[(side + 1) % n], share));
-        along += step;
+/// A contour and the lengths of its sides.
+pub struct Path<'a> {
+    points: &'a [[f64; 2]],
+    lengths: Vec<f64>,
+}
+
+impl<'a> Path<'a> {
+    /// Measures the sides of a contour.
+    pub fn new(contour: &'a Contour) -> Self {
+        let points = contour.points.as_slice();
+        let ends = points.iter().cycle().skip(1);
+        Self { points, lengths: points.iter().zip(ends).map(|(a, b)| distance(*a, *b)).collect() }
     }
-    resampled
+
+    /// `count` points equally spaced by arc length, counter-clockwise, from where the half axis from `centre` meets the
+    /// contour last; where it does not meet it, from the point seen nearest to that direction.
+    pub fn resampled(&self, centre: [f64; 2], start: Start, count: usize) -> Vec<[f64; 2]> {
+        let (points, n) = (self.points, self.points.len());
+        let place = last_crossing(points, centre, start).unwrap_or_else(|| nearest_in_direction(points, centre, start));
+        let length = |i: usize| self.lengths[i % n];
+        let step = self.lengths.iter().sum::<f64>() / count as f64;
+        let (mut side, mut along) = (place.side, place.share * length(place.side));
+        let mut resampled = Vec::with_capacity(count);
+        for _ in 0..count {
+            while along > length(side) && side < place.side + 2 * n {
+                along -= length(side);
+                side += 1;
+            }
+            let share = if length(side) > 0.0 { along / length(side) } else { 0.0 };
+            resampled.push(between(points[side % n], points[(side + 1) % n], share));
+            along += step;
+        }
+        resampled
+    }
 }
 
 /// Distances of the points from `centre`.
@@ -119,15 +133,15 @@ mod tests {
 
     #[test]
     fn points_start_on_the_half_axis_and_run_counter_clockwise() {
-        let points = resampled(&rectangle(), [3.0, 1.0], Start::Positive, 16);
+        let points = Path::new(&rectangle()).resampled([3.0, 1.0], Start::Positive, 16);
         assert_eq!(points[..4], [[6.0, 1.0], [6.0, 2.0], [5.0, 2.0], [4.0, 2.0]]);
-        let points = resampled(&rectangle(), [3.0, 1.0], Start::Negative, 16);
+        let points = Path::new(&rectangle()).resampled([3.0, 1.0], Start::Negative, 16);
         assert_eq!(points[..3], [[0.0, 1.0], [0.0, 0.0], [1.0, 0.0]]);
     }
 
     #[test]
     fn a_half_axis_that_leads_past_the_contour_takes_the_nearest_point() {
-        let points = resampled(&rectangle(), [9.0, 1.5], Start::Positive, 16);
+        let points = Path::new(&rectangle()).resampled([9.0, 1.5], Start::Positive, 16);
         assert_eq!(points[0], [6.0, 0.0]);
     }
 

@@ -10,6 +10,7 @@
 //! It does not promise anything about holes: only outer contours are described.
 
 pub mod contour;
+mod draw;
 pub mod fourier;
 pub mod hull;
 pub mod silhouette;
@@ -21,8 +22,9 @@ use crate::geometry::Frame;
 use crate::stages::{ModelError, Stage};
 
 use contour::Contour;
-use fourier::Start;
-use silhouette::{Silhouette, View};
+use draw::Raster;
+use fourier::{Path, Start};
+use silhouette::Silhouette;
 
 /// Harmonics kept of each contour.
 pub const HARMONICS: usize = 32;
@@ -129,12 +131,10 @@ pub fn silhouettes(
     if !(size > 0.0 && size.is_finite()) {
         return Err(ModelError::new(Stage::Descriptor, "the model has no extent"));
     }
-    let draw = |i: usize| {
-        let (right, up) = (frame.axes[(i + 1) % 3], frame.axes[(i + 2) % 3]);
-        let view = View { right, up, centre: measures.centroid, scale: options.scale(size) };
-        Silhouette::draw(mesh, &view, options.side(), cancel).map_err(|c| ModelError::cancelled(Stage::Descriptor, c))
-    };
-    Ok([draw(0)?, draw(1)?, draw(2)?])
+    let raster = Raster { centre: measures.centroid, scale: options.scale(size), side: options.side() };
+    let [x, y, z] = frame.axes.map(|axis| raster.project(mesh, &axis));
+    let draw = |sides| raster.draw(mesh, sides, cancel).map_err(|c| ModelError::cancelled(Stage::Descriptor, c));
+    Ok([draw([&y, &z])?, draw([&z, &x])?, draw([&x, &y])?])
 }
 
 /// The coefficients of one view from both starting points.
@@ -148,8 +148,9 @@ fn describe(picture: &Silhouette, options: &Options) -> Option<ViewDescriptor> {
     let unbroken = unbroken_contour(picture, options);
     let hull = unbroken.is_none();
     let contour = unbroken.map_or_else(|| hull::hull(picture), |contour| Some(contour.smoothed()))?;
+    let path = Path::new(&contour);
     let from = |start: Start| {
-        let points = fourier::resampled(&contour, centroid, start, options.points());
+        let points = path.resampled(centroid, start, options.points());
         let signature = if hull {
             hull::signature(picture, &points, centroid)
         } else {
