@@ -24,11 +24,24 @@ pub fn covariance(mesh: &Mesh) -> Matrix {
         return Matrix::zeros();
     }
     let m = Point::from(moment / total);
-    let f = |p: &Point| (p - m) * (p - m).transpose();
-    let term = |c: &[Point; 3]| f(&c[0]) + f(&c[1]) + f(&c[2]) + 9.0 * f(&centroid(c));
-    triangles(mesh).map(|(corners, _, area)| area * term(&corners)).sum::<Matrix>() / (12.0 * total)
+    let mut sum = [0.0; 6];
+    for (corners, _, area) in triangles(mesh) {
+        let [a, b, c, g] = [corners[0], corners[1], corners[2], centroid(&corners)].map(|p| products(&(p - m)));
+        for i in 0..6 {
+            sum[i] += area * (a[i] + b[i] + c[i] + 9.0 * g[i]);
+        }
+    }
+    let [xx, xy, xz, yy, yz, zz] = sum;
+    Matrix::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) / (12.0 * total)
 }
 
+/// The upper half of v v^T, row by row.
+#[inline]
+fn products(v: &Vector) -> [f64; 6] {
+    [v.x * v.x, v.x * v.y, v.x * v.z, v.y * v.y, v.y * v.z, v.z * v.z]
+}
+
+#[inline]
 fn centroid(corners: &[Point; 3]) -> Point {
     Point::from((corners[0].coords + corners[1].coords + corners[2].coords) / 3.0)
 }
