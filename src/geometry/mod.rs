@@ -4,6 +4,7 @@
 
 pub mod aabb;
 pub mod bvh;
+pub mod cells;
 pub mod directions;
 pub mod frame;
 pub mod isometry;

@@ -5,6 +5,7 @@ use tiny_skia::{Color, Pixmap, PremultipliedColorU8};
 use crate::geometry::Point;
 
 use super::Camera;
+use super::triangle::{Ramp, Triangle};
 
 /// Red, green, blue.
 pub type Rgb = [u8; 3];
@@ -18,8 +19,16 @@ pub enum Paint {
     Split(Rgb, Rgb),
 }
 
-/// A corner of a triangle: where it is, its light (0 to 1), its signed distance from the scene's plane.
-pub type Corner = (Point, f64, f64);
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// Where it lies in the picture, as the camera projects it.
+    pub at: [f64; 3],
+    /// Its light, 0 to 1.
+    pub light: f64,
+    /// Its signed distance from the scene's plane.
+    pub across: f64,
+}
 
 /// Samples of depth, colour and face.
 pub struct Canvas {
@@ -53,35 +62,34 @@ impl Canvas {
 
     /// Draws a triangle where nothing nearer is drawn yet.
     pub fn triangle(&mut self, corners: &[Corner; 3], paint: Paint, face: u32) {
-        let flat = corners.map(|(p, _, _)| self.camera.project(&p));
-        let values = [0, 1, 2].map(|i| [flat[i][2], corners[i].1, corners[i].2]);
-        self.samples_of(&flat, &values, |canvas, at, [depth, light, across]| {
-            if depth as f32 <= canvas.depths[at] {
-                return;
-            }
-            let colour = match paint {
-                Paint::Plain(colour) => colour,
-                Paint::Split(positive, negative) => {
-                    if across >= 0.0 {
-                        positive
-                    } else {
-                        negative
-                    }
+        let flat = corners.map(|c| [c.at[0], c.at[1]]);
+        let Some(triangle) = Triangle::new(flat) else { return };
+        let ramp = |value: fn(&Corner) -> f64| Ramp::new(&flat, [&corners[0], &corners[1], &corners[2]].map(value));
+        let (depths, lights, across) = (ramp(|c| c.at[2]), ramp(|c| c.light), ramp(|c| c.across));
+        let width = self.side * self.samples;
+        for (y, span) in triangle.spans(width) {
+            for x in span {
+                let (at, depth) = (y * width + x, depths.at(x, y) as f32);
+                if depth > self.depths[at] {
+                    let colour = match paint {
+                        Paint::Split(_, negative) if across.at(x, y) < 0.0 => negative,
+                        Paint::Plain(colour) | Paint::Split(colour, _) => colour,
+                    };
+                    let light = lights.at(x, y).clamp(0.0, 1.0);
+                    self.depths[at] = depth;
+                    self.faces[at] = face;
+                    self.colours[at] = colour.map(|c| (f64::from(c) * light) as u8);
                 }
-            };
-            canvas.depths[at] = depth as f32;
-            canvas.faces[at] = face;
-            canvas.colours[at] = colour.map(|c| (f64::from(c) * light.clamp(0.0, 1.0)) as u8);
-        });
+            }
+        }
     }
 
     /// Lays a translucent square over what lies behind it.
     pub fn square(&mut self, corners: [Point; 4], colour: Rgb) {
         let flat = corners.map(|p| self.camera.project(&p));
         for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
-            let values = [a, b, c].map(|i| [flat[i][2], 0.0, 0.0]);
-            self.samples_of(&[flat[a], flat[b], flat[c]], &values, |canvas, at, [depth, ..]| {
-                if depth as f32 > canvas.depths[at] {
+            self.samples_of([flat[a], flat[b], flat[c]], |canvas, at, depth| {
+                if depth > canvas.depths[at] {
                     canvas.colours[at] = blend(canvas.colours[at], colour, PLANE);
                 }
             });
@@ -96,9 +104,8 @@ impl Canvas {
         let corner = |p: [f64; 3], side: f64| [p[0] - side * y * half, p[1] + side * x * half, p[2]];
         let flat = [corner(a, 1.0), corner(b, 1.0), corner(b, -1.0), corner(a, -1.0)];
         for corners in [[0, 1, 2], [0, 2, 3]] {
-            let values = corners.map(|i| [flat[i][2], 0.0, 0.0]);
-            self.samples_of(&corners.map(|i| flat[i]), &values, |canvas, at, [depth, ..]| {
-                if over || depth as f32 >= canvas.depths[at] {
+            self.samples_of(corners.map(|i| flat[i]), |canvas, at, depth| {
+                if over || depth >= canvas.depths[at] {
                     canvas.colours[at] = colour;
                 }
             });
@@ -114,14 +121,20 @@ impl Canvas {
     /// Darkens the samples where one face borders on another or on the background.
     pub fn outline(&mut self) {
         let width = self.side * self.samples;
-        for at in 0..self.faces.len() {
-            let right = if (at + 1) % width == 0 { at } else { at + 1 };
-            let below = if at + width < self.faces.len() { at + width } else { at };
-            let differs = self.faces[right] != self.faces[at] || self.faces[below] != self.faces[at];
-            if differs {
-                self.colours[at] = blend(self.colours[at], [0; 3], OUTLINE);
+        for y in 0..width {
+            let (row, below) = (y * width, (y + 1).min(width - 1) * width);
+            for x in 0..width {
+                let face = self.faces[row + x];
+                if face != self.faces[row + (x + 1).min(width - 1)] || face != self.faces[below + x] {
+                    self.colours[row + x] = blend(self.colours[row + x], [0; 3], OUTLINE);
+                }
             }
         }
+    }
+
+    /// The colours of the pixels, row by row from the top.
+    pub fn pixels(&self) -> impl Iterator<Item = Rgb> {
+        (0..self.side * self.side).map(|i| self.mean(i % self.side, i / self.side))
     }
 
     /// The picture: the mean of the samples of each pixel.
@@ -129,8 +142,7 @@ impl Canvas {
         let side = self.side.clamp(1, 16_384);
         let mut picture = Pixmap::new(side as u32, side as u32).expect("a side between 1 and 16384 is a valid size");
         picture.fill(Color::WHITE);
-        for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
-            let [r, g, b] = self.mean(i % side, i / side);
+        for (pixel, [r, g, b]) in picture.pixels_mut().iter_mut().zip(self.pixels()) {
             *pixel = PremultipliedColorU8::from_rgba(r, g, b, 255).unwrap_or(*pixel);
         }
         picture
@@ -148,51 +160,15 @@ impl Canvas {
         sum.map(|s| (s / (n * n) as u32) as u8)
     }
 
-    /// Calls `draw` for each sample inside a triangle with the values there, which are linear over it.
-    fn samples_of(
-        &mut self,
-        flat: &[[f64; 3]; 3],
-        values: &[[f64; 3]; 3],
-        mut draw: impl FnMut(&mut Self, usize, [f64; 3]),
-    ) {
-        let [a, b, c] = flat;
-        let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        let width = self.side * self.samples;
-        let (top, bottom) = (a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]));
-        if !(doubled.abs() > 1e-9 && bottom.is_finite() && top.is_finite()) {
-            return;
-        }
-        for y in first_sample(top, width)..first_sample(bottom, width) {
-            let height = y as f64 + 0.5;
-            let (left, right) = span_at(flat, height);
-            for x in first_sample(left, width)..first_sample(right, width) {
-                let d = [x as f64 + 0.5 - a[0], height - a[1]];
-                let s = (d[0] * (c[1] - a[1]) - d[1] * (c[0] - a[0])) / doubled;
-                let t = (d[1] * (b[0] - a[0]) - d[0] * (b[1] - a[1])) / doubled;
-                let value = [0, 1, 2]
-                    .map(|i| values[0][i] + s * (values[1][i] - values[0][i]) + t * (values[2][i] - values[0][i]));
-                draw(self, y * width + x, value);
-            }
+    /// Calls `draw` for each sample inside a triangle with the depth there.
+    fn samples_of(&mut self, corners: [[f64; 3]; 3], mut draw: impl FnMut(&mut Self, usize, f32)) {
+        let flat = corners.map(|[x, y, _]| [x, y]);
+        let Some(triangle) = Triangle::new(flat) else { return };
+        let (depths, width) = (Ramp::new(&flat, corners.map(|c| c[2])), self.side * self.samples);
+        for (y, span) in triangle.spans(width) {
+            span.for_each(|x| draw(self, y * width + x, depths.at(x, y) as f32));
         }
     }
-}
-
-/// The first sample (sample centres are at halves) not before a coordinate.
-fn first_sample(c: f64, width: usize) -> usize {
-    ((c - 0.5).ceil().max(0.0) as usize).min(width)
-}
-
-/// What a triangle covers of the horizontal line at `y`.
-fn span_at(flat: &[[f64; 3]; 3], y: f64) -> (f64, f64) {
-    let mut span = (f64::INFINITY, f64::NEG_INFINITY);
-    for (from, to) in [(0, 1), (1, 2), (2, 0)] {
-        let (a, b) = (flat[from], flat[to]);
-        if (a[1] <= y) != (b[1] <= y) {
-            let x = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            span = (span.0.min(x), span.1.max(x));
-        }
-    }
-    span
 }
 
 fn blend(under: Rgb, over: Rgb, share: f32) -> Rgb {

@@ -8,15 +8,17 @@ mod canvas;
 pub mod figures;
 mod plot;
 mod text;
+mod triangle;
 
 use tiny_skia::Pixmap;
 
 use crate::brep::measure::Measures;
-use crate::brep::{Mesh, PlacedFaceId};
+use crate::brep::{Mesh, MeshFace, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Frame, Plane, Point, Vector};
 
 pub use camera::Camera;
+use canvas::Corner;
 pub use canvas::{Canvas, Paint, Rgb};
 pub use plot::area_curve;
 
@@ -53,20 +55,16 @@ pub struct Scene<'a> {
 pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize) -> Canvas {
     let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * SAMPLES).including(scene.also);
     let mut canvas = Canvas::new(camera, side, SAMPLES);
-    let lights = lights(scene.mesh, canvas.camera());
-    for number in 0..scene.mesh.faces.len() {
+    let mut corners = Vec::new();
+    for (number, face) in scene.mesh.faces.iter().enumerate() {
         let id = PlacedFaceId(number as u32);
         let paint = paint(id);
-        for t in scene.mesh.triangles_of(id) {
+        seen(scene, face, canvas.camera(), &mut corners);
+        for triangle in &scene.mesh.triangles[scene.mesh.triangles_of(id)] {
             if scene.cancel.is_cancelled() {
                 return canvas;
             }
-            let corners = scene.mesh.triangles[t].map(|i| {
-                let point = &scene.mesh.points[i as usize];
-                let across = scene.plane.map_or(0.0, |plane| plane.signed_distance(point));
-                (*point, lights[i as usize], across)
-            });
-            canvas.triangle(&corners, paint, number as u32);
+            canvas.triangle(&triangle.map(|i| corners[(i - face.points.start) as usize]), paint, number as u32);
         }
     }
     canvas.outline();
@@ -79,9 +77,9 @@ pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize)
 /// When cancelled.
 pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame, cancel: &Cancel) -> Result<Vec<u8>, Cancelled> {
     let scene = Scene { mesh, measures, frame, plane: None, also: &[], cancel };
-    let picture = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL).resolved();
+    let canvas = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL);
     cancel.check()?;
-    Ok(picture.pixels().iter().map(|p| luminance([p.red(), p.green(), p.blue()])).collect())
+    Ok(canvas.pixels().map(luminance).collect())
 }
 
 /// The PNG file of a picture.
@@ -93,19 +91,28 @@ fn luminance([r, g, b]: Rgb) -> u8 {
     ((u32::from(r) * 299 + u32::from(g) * 587 + u32::from(b) * 114 + 500) / 1000) as u8
 }
 
-/// How much light reaches each point of the mesh, 0 to 1: Lambert's law on both sides, with normals averaged over the
-/// triangles of the face that meet there (points belong to one face, so that edges stay sharp).
-fn lights(mesh: &Mesh, camera: &Camera) -> Vec<f64> {
-    let mut normals = vec![Vector::zeros(); mesh.points.len()];
-    for (t, triangle) in mesh.triangles.iter().enumerate() {
-        let normal = mesh.doubled_normal(t);
-        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+/// The points of a face as the camera sees them, into `corners`. Their light follows Lambert's law on both sides, with
+/// normals averaged over the triangles that meet there (points belong to one face, so that edges stay sharp).
+fn seen(scene: &Scene, face: &MeshFace, camera: &Camera, corners: &mut Vec<Corner>) {
+    let points = &scene.mesh.points[face.points.start as usize..face.points.end as usize];
+    let mut normals = vec![Vector::zeros(); points.len()];
+    for t in face.triangles.clone() {
+        let normal = scene.mesh.doubled_normal(t as usize);
+        let corners = scene.mesh.triangles[t as usize].map(|i| (i - face.points.start) as usize);
+        corners.iter().for_each(|&i| normals[i] += normal);
     }
+    let lamp = camera.lamp();
     let light = |normal: &Vector| {
         let length = normal.norm();
-        if length > 0.0 { AMBIENT + (1.0 - AMBIENT) * camera.lamp().dot(normal).abs() / length } else { AMBIENT }
+        if length > 0.0 { AMBIENT + (1.0 - AMBIENT) * lamp.dot(normal).abs() / length } else { AMBIENT }
     };
-    normals.iter().map(light).collect()
+    let across = |p: &Point| scene.plane.map_or(0.0, |plane| plane.signed_distance(p));
+    corners.clear();
+    corners.extend(points.iter().zip(&normals).map(|(p, normal)| Corner {
+        at: camera.project(p),
+        light: light(normal),
+        across: across(p),
+    }));
 }
 
 #[cfg(test)]

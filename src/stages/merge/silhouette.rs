@@ -1,6 +1,7 @@
 //! The area of a model's shadow, roughly: only to settle ties.
 
 use crate::brep::Mesh;
+use crate::geometry::cells::first_centre;
 use crate::geometry::{Plane, Point, Point2, Vector, any_perpendicular};
 
 /// Pixels along a side.
@@ -26,7 +27,7 @@ pub(super) fn area(mesh: &Mesh, plane: &Plane, centroid: &Point, size: f64) -> f
 
 /// Covers the pixels whose centres lie in the triangle.
 fn fill(covered: &mut [bool], corners: [Point2; 3]) {
-    let bound = |v: f64| (v - 0.5).ceil().clamp(0.0, PIXELS as f64) as usize;
+    let bound = |v: f64| first_centre(v, PIXELS);
     let low = corners.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     let high = corners.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
     for row in bound(low)..bound(high) {
