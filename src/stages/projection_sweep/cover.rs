@@ -6,6 +6,9 @@ use super::slices::Flat;
 
 /// The hulls that do not lie inside the largest one, itself among them, in their order.
 pub(super) fn uncovered(points: &[Flat], hulls: &[Range<usize>]) -> Vec<Range<usize>> {
+    if hulls.len() < 2 {
+        return hulls.to_vec();
+    }
     let area = |hull: &Range<usize>| doubled_area(&points[hull.clone()]);
     let largest = hulls.iter().map(|hull| (area(hull), hull)).max_by(|a, b| a.0.total_cmp(&b.0));
     let Some((_, largest)) = largest.filter(|(area, _)| *area > 0.0) else { return hulls.to_vec() };
@@ -28,7 +31,8 @@ impl<'a> Cover<'a> {
         let share = 1.0 / hull.len().max(1) as f64;
         let centre = [0, 1].map(|i| hull.iter().map(|p| p[i]).sum::<f64>() * share);
         let mut cover = Self { hull, centre, within: 0.0 };
-        let nearest = cover.heights(centre).fold(f64::INFINITY, f64::min).max(0.0);
+        let heights = cover.sides().map(|[a, b]| beside(a, b, centre) / (b[0] - a[0]).hypot(b[1] - a[1]));
+        let nearest = heights.fold(f64::INFINITY, f64::min).max(0.0);
         // What rounding may add to a distance stays outside.
         cover.within = (nearest * (1.0 - 1e-9)).powi(2);
         cover
@@ -38,18 +42,18 @@ impl<'a> Cover<'a> {
     fn holds(&self, points: &[Flat]) -> bool {
         points.iter().all(|p| {
             let d = [p[0] - self.centre[0], p[1] - self.centre[1]];
-            d[0] * d[0] + d[1] * d[1] <= self.within || self.heights(*p).all(|height| height >= 0.0)
+            d[0] * d[0] + d[1] * d[1] <= self.within || self.sides().all(|[a, b]| beside(a, b, *p) >= 0.0)
         })
     }
 
-    /// Signed distances of a point from the sides, inside positive.
-    fn heights(&self, p: Flat) -> impl Iterator<Item = f64> + '_ {
-        let ends = self.hull.iter().cycle().skip(1);
-        self.hull.iter().zip(ends).map(move |(a, b)| {
-            let side = [b[0] - a[0], b[1] - a[1]];
-            (side[0] * (p[1] - a[1]) - side[1] * (p[0] - a[0])) / side[0].hypot(side[1])
-        })
+    fn sides(&self) -> impl Iterator<Item = [Flat; 2]> + '_ {
+        self.hull.iter().zip(self.hull.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
     }
+}
+
+/// How far a point lies to the left of the way from `a` to `b`, times that way's length.
+fn beside(a: Flat, b: Flat, p: Flat) -> f64 {
+    (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
 }
 
 /// Twice the area of a counter-clockwise polygon, mm^2.

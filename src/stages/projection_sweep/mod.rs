@@ -17,6 +17,7 @@ mod pixels;
 mod reference;
 mod shadow;
 mod slices;
+mod wire;
 
 use crate::alignment::npca;
 use crate::cancel::Cancel;

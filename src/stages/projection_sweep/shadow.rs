@@ -4,10 +4,8 @@
 
 use crate::brep::Mesh;
 use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::cells::first_centre;
 use crate::geometry::{Point, Vector};
-
-/// Intervals held at a time: bounds the memory at some 20 MB.
-const INTERVALS: usize = 1 << 20;
 
 /// Area of the mesh's shadow on the plane of `across` and `along` (at right angles, unit vectors), mm^2: the mesh is cut
 /// into `count` slices across `across`. `centre` is near the mesh.
@@ -29,15 +27,14 @@ pub fn area(
     if !(thickness > 0.0 && thickness.is_finite()) {
         return Ok(0.0);
     }
-    let level = |height: f64| ((height - low) / thickness - 0.5).ceil().clamp(0.0, count as f64) as u32;
-    let corners: Vec<_> = corners.into_iter().map(|(height, x)| Corner { height, x, level: level(height) }).collect();
-    let cut = Cut { mesh, corners, low, thickness };
-    let block = (count * INTERVALS / cut.intervals().max(INTERVALS)).max(1);
-    let mut length = 0.0;
-    for first in (0..count).step_by(block) {
-        length += cut.lengths(first as u32..(first + block).min(count) as u32, cancel)?;
+    let level = |height: f64| first_centre((height - low) / thickness, count);
+    let corners = corners.into_iter().map(|(height, x)| Corner { height, x, level: level(height) as u32 }).collect();
+    let mut cut = Cut { corners, low, thickness, shadows: vec![Union::default(); count] };
+    for some in mesh.triangles.chunks(4096) {
+        cancel.check()?;
+        some.iter().for_each(|triangle| cut.cast(triangle));
     }
-    Ok(thickness * length)
+    Ok(thickness * cut.shadows.iter_mut().map(Union::length).sum::<f64>())
 }
 
 /// A point of the mesh: its height, where it is along the shadow, and the first slice at or above it.
@@ -48,48 +45,37 @@ struct Corner {
     level: u32,
 }
 
-struct Cut<'a> {
-    mesh: &'a Mesh,
+struct Cut {
     corners: Vec<Corner>,
     low: f64,
     thickness: f64,
+    /// Of each slice.
+    shadows: Vec<Union>,
 }
 
-impl Cut<'_> {
+impl Cut {
+    /// Adds what a triangle casts to the shadows of the slices that it crosses.
+    fn cast(&mut self, triangle: &[u32; 3]) {
+        let [a, b, c] = self.upward(triangle);
+        let (left, right) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
+        for (slice, shadow) in (a.level..c.level).zip(&mut self.shadows[a.level as usize..c.level as usize]) {
+            if shadow.holds(left, right) {
+                continue;
+            }
+            let height = self.low + (f64::from(slice) + 0.5) * self.thickness;
+            let (p, q) = (
+                crossing(&a, &c, height),
+                if slice < b.level { crossing(&a, &b, height) } else { crossing(&b, &c, height) },
+            );
+            shadow.add(p.min(q), p.max(q));
+        }
+    }
+
     /// The corners of a triangle, lowest first.
-    fn corners(&self, triangle: &[u32; 3]) -> [Corner; 3] {
+    fn upward(&self, triangle: &[u32; 3]) -> [Corner; 3] {
         let mut corners = triangle.map(|i| self.corners[i as usize]);
         corners.sort_unstable_by(|a, b| a.height.total_cmp(&b.height));
         corners
-    }
-
-    /// How many slices the triangles cross, in all.
-    fn intervals(&self) -> usize {
-        let crossed = |t: &[u32; 3]| {
-            let levels = t.map(|i| self.corners[i as usize].level);
-            (levels[0].max(levels[1]).max(levels[2]) - levels[0].min(levels[1]).min(levels[2])) as usize
-        };
-        self.mesh.triangles.iter().map(crossed).sum()
-    }
-
-    /// The lengths of the shadows of some slices, summed.
-    fn lengths(&self, slices: std::ops::Range<u32>, cancel: &Cancel) -> Result<f64, Cancelled> {
-        let mut intervals = vec![Vec::new(); slices.len()];
-        for (number, triangle) in self.mesh.triangles.iter().enumerate() {
-            if number % 4096 == 0 {
-                cancel.check()?;
-            }
-            let [a, b, c] = self.corners(triangle);
-            for slice in a.level.max(slices.start)..c.level.min(slices.end) {
-                let height = self.low + (f64::from(slice) + 0.5) * self.thickness;
-                let (p, q) = (
-                    crossing(&a, &c, height),
-                    if slice < b.level { crossing(&a, &b, height) } else { crossing(&b, &c, height) },
-                );
-                intervals[(slice - slices.start) as usize].push((p.min(q), p.max(q)));
-            }
-        }
-        Ok(intervals.iter_mut().map(|intervals| union_length(intervals)).sum())
     }
 }
 
@@ -99,17 +85,65 @@ fn crossing(a: &Corner, b: &Corner, height: f64) -> f64 {
     a.x + share * (b.x - a.x)
 }
 
-/// Length of the union of intervals.
-fn union_length(intervals: &mut [(f64, f64)]) -> f64 {
-    intervals.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut length, mut covered) = (0.0, f64::NEG_INFINITY);
-    for &(low, high) in intervals.iter() {
-        if high > covered {
-            length += high - low.max(covered);
-            covered = high;
+/// The union of intervals given one by one.
+#[derive(Clone)]
+struct Union {
+    /// A part of it, which grows with all that touches it: of most shadows the whole.
+    main: [f64; 2],
+    /// What was apart from the main part when it came.
+    others: Vec<[f64; 2]>,
+    /// As many others are joined before more are kept.
+    most: usize,
+}
+
+impl Default for Union {
+    fn default() -> Self {
+        Self { main: [f64::INFINITY, f64::NEG_INFINITY], others: Vec::new(), most: 32 }
+    }
+}
+
+impl Union {
+    /// Whether the main part holds an interval.
+    #[inline]
+    fn holds(&self, low: f64, high: f64) -> bool {
+        self.main[0] <= low && high <= self.main[1]
+    }
+
+    fn add(&mut self, low: f64, high: f64) {
+        if self.main[0] > self.main[1] || (low <= self.main[1] && high >= self.main[0]) {
+            self.main = [self.main[0].min(low), self.main[1].max(high)];
+        } else {
+            self.others.push([low, high]);
+            if self.others.len() > self.most {
+                self.join();
+                self.most = 32 + 2 * self.others.len();
+            }
         }
     }
-    length
+
+    /// Joins all parts that touch: the longest becomes the main part, the others lie apart from each other and from it.
+    fn join(&mut self) {
+        self.others.push(self.main);
+        self.others.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        self.others.dedup_by(|next, joined| {
+            let touching = next[0] <= joined[1];
+            if touching {
+                joined[1] = joined[1].max(next[1]);
+            }
+            touching
+        });
+        let length = |i: &usize| self.others[*i][1] - self.others[*i][0];
+        let longest = (0..self.others.len()).max_by(|i, j| length(i).total_cmp(&length(j)));
+        self.main = self.others.swap_remove(longest.unwrap_or(0));
+    }
+
+    fn length(&mut self) -> f64 {
+        if !self.others.is_empty() {
+            self.join();
+        }
+        let main = (self.main[1] - self.main[0]).max(0.0);
+        main + self.others.iter().map(|[low, high]| high - low).sum::<f64>()
+    }
 }
 
 #[cfg(test)]
@@ -127,6 +161,20 @@ mod tests {
 
     #[test]
     fn intervals_that_overlap_count_once() {
-        assert_eq!(union_length(&mut [(4.0, 6.0), (0.0, 2.0), (1.0, 3.0), (1.5, 2.5)]), 5.0);
+        let mut union = Union::default();
+        assert_eq!(union.length(), 0.0);
+        [(4.0, 6.0), (0.0, 2.0), (1.0, 3.0), (1.5, 2.5)].into_iter().for_each(|(low, high)| union.add(low, high));
+        assert_eq!(union.length(), 5.0);
+        assert!(union.holds(0.5, 2.5) && !union.holds(4.5, 5.0));
+    }
+
+    #[test]
+    fn a_thousand_teeth_are_joined_as_they_close_up() {
+        let mut union = Union::default();
+        (0..1000).for_each(|i| union.add(f64::from(2 * i), f64::from(2 * i + 1)));
+        assert_eq!(union.length(), 1000.0);
+        (0..1000).for_each(|i| union.add(f64::from(2 * i + 1), f64::from(2 * i + 2)));
+        assert_eq!(union.length(), 2000.0);
+        assert!(union.others.is_empty());
     }
 }
