@@ -63,11 +63,11 @@ impl Canvas {
     /// Draws a triangle where nothing nearer is drawn yet.
     pub fn triangle(&mut self, corners: &[Corner; 3], paint: Paint, face: u32) {
         let flat = corners.map(|c| [c.at[0], c.at[1]]);
-        let Some(triangle) = Triangle::new(flat) else { return };
+        let width = self.side * self.samples;
+        let Some(triangle) = Triangle::new(flat, width) else { return };
         let ramp = |value: fn(&Corner) -> f64| Ramp::new(&flat, [&corners[0], &corners[1], &corners[2]].map(value));
         let (depths, lights, across) = (ramp(|c| c.at[2]), ramp(|c| c.light), ramp(|c| c.across));
-        let width = self.side * self.samples;
-        for (y, span) in triangle.spans(width) {
+        for (y, span) in triangle.spans() {
             for x in span {
                 let (at, depth) = (y * width + x, depths.at(x, y) as f32);
                 if depth > self.depths[at] {
@@ -163,9 +163,10 @@ impl Canvas {
     /// Calls `draw` for each sample inside a triangle with the depth there.
     fn samples_of(&mut self, corners: [[f64; 3]; 3], mut draw: impl FnMut(&mut Self, usize, f32)) {
         let flat = corners.map(|[x, y, _]| [x, y]);
-        let Some(triangle) = Triangle::new(flat) else { return };
-        let (depths, width) = (Ramp::new(&flat, corners.map(|c| c[2])), self.side * self.samples);
-        for (y, span) in triangle.spans(width) {
+        let width = self.side * self.samples;
+        let Some(triangle) = Triangle::new(flat, width) else { return };
+        let depths = Ramp::new(&flat, corners.map(|c| c[2]));
+        for (y, span) in triangle.spans() {
             span.for_each(|x| draw(self, y * width + x, depths.at(x, y) as f32));
         }
     }

@@ -6,14 +6,23 @@ use crate::geometry::cells::first_centre;
 
 /// A triangle in the picture, its corners from the top down.
 pub(super) struct Triangle {
+    width: usize,
     corners: [[f64; 2]; 3],
     /// Samples to the right for each sample down: along the long side, the upper and the lower short side.
     slopes: [f64; 3],
 }
 
 impl Triangle {
-    /// A triangle given by where its corners lie: samples to the right, samples down. `None` if it is seen edge-on.
-    pub fn new(mut corners: [[f64; 2]; 3]) -> Option<Self> {
+    /// A triangle in a picture `width` samples wide and high, given by where its corners lie: samples to the right,
+    /// samples down. `None` if it is seen edge-on or lies between the samples.
+    pub fn new(mut corners: [[f64; 2]; 3], width: usize) -> Option<Self> {
+        let misses = |i: usize| {
+            let [a, b, c] = corners.map(|corner| corner[i]);
+            first_centre(a.min(b).min(c), width) == first_centre(a.max(b).max(c), width)
+        };
+        if misses(0) || misses(1) {
+            return None;
+        }
         let doubled = doubled_area(&corners);
         if !(doubled.abs() > 1e-9 && doubled.is_finite()) {
             return None;
@@ -21,12 +30,12 @@ impl Triangle {
         corners.sort_unstable_by(|a, b| a[1].total_cmp(&b[1]));
         let [a, b, c] = corners;
         let slope = |from: [f64; 2], to: [f64; 2]| (to[0] - from[0]) / (to[1] - from[1]);
-        Some(Self { corners, slopes: [slope(a, c), slope(a, b), slope(b, c)] })
+        Some(Self { width, corners, slopes: [slope(a, c), slope(a, b), slope(b, c)] })
     }
 
-    /// The rows that it passes and in each the samples inside, in a picture `width` samples wide and high.
-    pub fn spans(&self, width: usize) -> impl Iterator<Item = (usize, Range<usize>)> {
-        let Self { corners: [a, b, c], slopes: [long, upper, lower] } = *self;
+    /// The rows that it passes and in each the samples inside.
+    pub fn spans(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
+        let Self { width, corners: [a, b, c], slopes: [long, upper, lower] } = *self;
         (first_centre(a[1], width)..first_centre(c[1], width)).map(move |y| {
             let height = y as f64 + 0.5;
             let p = a[0] + (height - a[1]) * long;
@@ -78,12 +87,13 @@ mod tests {
     #[test]
     fn a_triangle_covers_the_samples_whose_centres_it_holds() {
         // Right angle at (1, 1), legs of 4: the hypotenuse passes through the centres where x + y = 5.
-        let triangle = Triangle::new([[1.0, 5.0], [1.0, 1.0], [5.0, 1.0]]).unwrap();
-        let spans: Vec<_> = triangle.spans(8).collect();
-        assert_eq!(spans, [(1, 1..4), (2, 1..3), (3, 1..2), (4, 1..1)]);
-        assert_eq!(triangle.spans(2).collect::<Vec<_>>(), [(1, 1..2)]);
-        assert!(Triangle::new([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]]).is_none());
-        assert!(Triangle::new([[0.0, 0.0], [1.0, f64::NAN], [2.0, 2.0]]).is_none());
+        let triangle = [[1.0, 5.0], [1.0, 1.0], [5.0, 1.0]];
+        let spans = |width| Triangle::new(triangle, width).unwrap().spans().collect::<Vec<_>>();
+        assert_eq!(spans(8), [(1, 1..4), (2, 1..3), (3, 1..2), (4, 1..1)]);
+        assert_eq!(spans(2), [(1, 1..2)]);
+        assert!(Triangle::new([[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]], 8).is_none());
+        assert!(Triangle::new([[0.0, 0.0], [1.0, f64::NAN], [2.0, 2.0]], 8).is_none());
+        assert!(Triangle::new([[0.6, 0.0], [1.4, 0.0], [1.0, 9.0]], 8).is_none());
     }
 
     #[test]

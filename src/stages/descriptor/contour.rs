@@ -34,20 +34,13 @@ impl Contour {
 
     /// Covered pixels of a picture inside this contour (which runs along the boundaries of pixels).
     pub fn enclosed(&self, picture: &Silhouette) -> usize {
-        let mut crossings = vec![Vec::new(); picture.side()];
-        let mut previous = self.points.last();
-        for p in &self.points {
-            if let Some(q) = previous.filter(|q| q[1] != p[1]) {
-                crossings[q[1].min(p[1]) as usize].push(p[0] as usize);
-            }
-            previous = Some(p);
-        }
-        let mut count = 0;
-        for (y, row) in crossings.iter_mut().enumerate() {
-            row.sort_unstable();
-            count += row.chunks_exact(2).map(|pair| picture.count(y, pair[0], pair[1])).sum::<usize>();
-        }
-        count
+        let ends = self.points.iter().cycle().skip(1);
+        let crossing = |(p, q): (&[f64; 2], &[f64; 2])| (p[1] != q[1]).then(|| [p[1].min(q[1]) as u32, p[0] as u32]);
+        // Row by row, and in each from left to right: in, out, in, out.
+        let mut crossings: Vec<_> = self.points.iter().zip(ends).filter_map(crossing).collect();
+        crossings.sort_unstable();
+        let inside = |pair: &[[u32; 2]]| picture.count(pair[0][0] as usize, pair[0][1] as usize, pair[1][1] as usize);
+        crossings.chunks_exact(2).map(inside).sum()
     }
 
     /// The contour with its stairs smoothed to lines.
@@ -66,8 +59,9 @@ impl Contour {
 pub fn boundaries(picture: &Silhouette) -> Vec<Vec<[isize; 2]>> {
     let mut seen = Silhouette::new(picture.side());
     let mut paths = Vec::new();
-    for y in 0..picture.side() as isize {
-        for x in left_edges(picture, y as usize) {
+    for y in 0..picture.side() {
+        for x in left_edges(picture.row(y)) {
+            let [x, y] = [x as isize, y as isize];
             if !seen.get(x, y) {
                 paths.push(trace(picture, [x, y], &mut seen));
             }
@@ -77,18 +71,22 @@ pub fn boundaries(picture: &Silhouette) -> Vec<Vec<[isize; 2]>> {
 }
 
 /// The covered pixels of a row whose left neighbour is not covered.
-fn left_edges(picture: &Silhouette, y: usize) -> Vec<isize> {
-    let mut edges = Vec::new();
-    let mut carry = 0;
-    for (number, &word) in picture.row(y).iter().enumerate() {
-        let mut starts = word & !(word << 1 | carry);
-        carry = word >> 63;
-        while starts != 0 {
-            edges.push((64 * number) as isize + starts.trailing_zeros() as isize);
-            starts &= starts - 1;
-        }
-    }
-    edges
+fn left_edges(row: &[u64]) -> impl Iterator<Item = usize> {
+    let starts = row.iter().scan(0, |carry, &word| {
+        let starts = word & !(word << 1 | *carry);
+        *carry = word >> 63;
+        Some(starts)
+    });
+    starts.enumerate().flat_map(|(number, word)| bits(word).map(move |bit| 64 * number + bit))
+}
+
+/// The positions of a word's ones.
+fn bits(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let position = word.trailing_zeros() as usize;
+        word &= word.wrapping_sub(1);
+        (position < 64).then_some(position)
+    })
 }
 
 /// Follows the boundary that holds the left edge of a covered pixel, the covered side on the left, and marks all left

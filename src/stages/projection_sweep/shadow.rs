@@ -56,7 +56,11 @@ struct Cut {
 impl Cut {
     /// Adds what a triangle casts to the shadows of the slices that it crosses.
     fn cast(&mut self, triangle: &[u32; 3]) {
-        let [a, b, c] = self.upward(triangle);
+        let corners = triangle.map(|i| self.corners[i as usize]);
+        if corners[1].level == corners[0].level && corners[2].level == corners[0].level {
+            return;
+        }
+        let [a, b, c] = upward(corners);
         let (left, right) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
         for (slice, shadow) in (a.level..c.level).zip(&mut self.shadows[a.level as usize..c.level as usize]) {
             if shadow.holds(left, right) {
@@ -70,13 +74,12 @@ impl Cut {
             shadow.add(p.min(q), p.max(q));
         }
     }
+}
 
-    /// The corners of a triangle, lowest first.
-    fn upward(&self, triangle: &[u32; 3]) -> [Corner; 3] {
-        let mut corners = triangle.map(|i| self.corners[i as usize]);
-        corners.sort_unstable_by(|a, b| a.height.total_cmp(&b.height));
-        corners
-    }
+/// The corners of a triangle, lowest first.
+fn upward(mut corners: [Corner; 3]) -> [Corner; 3] {
+    corners.sort_unstable_by(|a, b| a.height.total_cmp(&b.height));
+    corners
 }
 
 /// Where the side from `a` up to `b` is at a height.

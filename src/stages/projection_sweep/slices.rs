@@ -163,7 +163,8 @@ impl Slice {
             let highest = hull.clone().max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(hull.start);
             [lowest, highest]
         };
-        self.extremes = self.hulls.iter().map(extremes).collect();
+        self.extremes.clear();
+        self.extremes.extend(self.hulls.iter().map(extremes));
     }
 
     /// Walkers where it last stood.
@@ -205,6 +206,9 @@ impl Walker {
 /// Length of the union of the hulls' intervals in a direction.
 fn shadow_length(points: &[Flat], walkers: &mut [Walker], direction: Flat) -> f64 {
     walkers.iter_mut().for_each(|w| w.turn(points, direction));
+    if let [alone] = walkers {
+        return alone.high - alone.low;
+    }
     walkers.sort_unstable_by(|a, b| a.low.total_cmp(&b.low));
     let (mut length, mut covered) = (0.0, f64::NEG_INFINITY);
     for w in walkers.iter() {
