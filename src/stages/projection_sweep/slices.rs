@@ -32,6 +32,8 @@ pub(super) type Flat = [f64; 2];
 pub struct Slices {
     thickness: f64,
     slices: Vec<Slice>,
+    /// The largest coordinate in a slice, mm.
+    reach: f64,
     /// The angle at which the slices know their extreme points.
     stood: Option<f64>,
 }
@@ -49,6 +51,9 @@ struct Slice {
 /// that refine one minimum lie within two steps of a degree.
 const NEAR: f64 = 0.1;
 
+/// Heights of points that differ by less than this share of the largest coordinate may differ by rounding only.
+const NOISE: f64 = 1e-12;
+
 impl Slices {
     /// Cuts the model for the shadows along directions at right angles to `axis`, angles counted from `start`.
     pub fn about(
@@ -61,6 +66,11 @@ impl Slices {
         Self::cut(&parsed.mesh, &Turntable::about(&parsed.measures, axis, start), count, cancel)
     }
 
+    fn new(thickness: f64, slices: Vec<Slice>) -> Self {
+        let coordinates = slices.iter().flat_map(|slice| slice.points.as_flattened());
+        Self { reach: coordinates.fold(0.0, |most, c| most.max(c.abs())), thickness, slices, stood: None }
+    }
+
     /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
     pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
         let mut count = count.clamp(1, 65_536) as usize;
@@ -68,7 +78,7 @@ impl Slices {
         let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &z| (l.min(z), h.max(z)));
         let mut thickness = (high - low) / count as f64;
         if !(thickness > 0.0 && thickness.is_finite()) {
-            return Ok(Self { thickness: 0.0, slices: Vec::new(), stood: None });
+            return Ok(Self::new(0.0, Vec::new()));
         }
         let mut wire = Wire::new(mesh, table, low, thickness, count);
         let mut crossings = wire.crossings(&(0..count));
@@ -85,7 +95,7 @@ impl Slices {
             [one] => vec![cut(one)?],
             many => many.par_iter().map(|b| cancel.account().within(|| cut(b))).collect::<Result<_, _>>()?,
         };
-        Ok(Self { thickness, slices: parts.into_iter().flatten().collect(), stood: None })
+        Ok(Self::new(thickness, parts.into_iter().flatten().collect()))
     }
 }
 
@@ -98,6 +108,7 @@ impl Shadows for Slices {
             self.slices.iter_mut().for_each(|slice| slice.stand(across(start)));
             self.stood = Some(start);
         }
+        let noise = NOISE * self.reach;
         let directions: Vec<Flat> = angles.iter().map(|&a| across(a)).collect();
         let mut areas = vec![0.0; angles.len()];
         let mut walkers = Vec::new();
@@ -106,7 +117,7 @@ impl Shadows for Slices {
             walkers.extend(slice.walkers());
             for (area, &direction) in areas.iter_mut().zip(&directions) {
                 cancel.check()?;
-                *area += self.thickness * shadow_length(&slice.points, &mut walkers, direction);
+                *area += self.thickness * shadow_length(&slice.points, &mut walkers, direction, noise);
             }
         }
         Ok(areas)
@@ -182,30 +193,33 @@ impl Slice {
 
 impl Walker {
     /// Walks on to the extreme points in a direction at most half a turn after the last.
-    fn turn(&mut self, points: &[Flat], direction: Flat) {
-        let next = |i: usize| if i + 1 == self.hull.end { self.hull.start } else { i + 1 };
-        self.high = dot(points[self.highest], direction);
-        self.low = dot(points[self.lowest], direction);
+    fn turn(&mut self, points: &[Flat], direction: Flat, noise: f64) {
+        (self.highest, self.high) = self.walked(self.highest, noise, |i| dot(points[i], direction));
+        let low = self.walked(self.lowest, noise, |i| -dot(points[i], direction));
+        (self.lowest, self.low) = (low.0, -low.1);
+    }
+
+    /// Counter-clockwise on from a point of the hull to the highest: as far as it goes up. Where points lie closer
+    /// together than `noise` rounding decides which is higher; they are passed over.
+    #[inline]
+    fn walked(&self, from: usize, noise: f64, height: impl Fn(usize) -> f64) -> (usize, f64) {
+        let (mut at, mut highest) = (from, (from, height(from)));
         for _ in 0..self.hull.len() {
-            let ahead = dot(points[next(self.highest)], direction);
-            if ahead <= self.high {
+            at = if at + 1 == self.hull.end { self.hull.start } else { at + 1 };
+            let ahead = height(at);
+            if ahead > highest.1 {
+                highest = (at, ahead);
+            } else if ahead < highest.1 - noise {
                 break;
             }
-            (self.highest, self.high) = (next(self.highest), ahead);
         }
-        for _ in 0..self.hull.len() {
-            let ahead = dot(points[next(self.lowest)], direction);
-            if ahead >= self.low {
-                break;
-            }
-            (self.lowest, self.low) = (next(self.lowest), ahead);
-        }
+        highest
     }
 }
 
 /// Length of the union of the hulls' intervals in a direction.
-fn shadow_length(points: &[Flat], walkers: &mut [Walker], direction: Flat) -> f64 {
-    walkers.iter_mut().for_each(|w| w.turn(points, direction));
+fn shadow_length(points: &[Flat], walkers: &mut [Walker], direction: Flat, noise: f64) -> f64 {
+    walkers.iter_mut().for_each(|w| w.turn(points, direction, noise));
     if let [alone] = walkers {
         return alone.high - alone.low;
     }
@@ -227,4 +241,21 @@ fn across(angle: f64) -> Flat {
 
 fn dot(a: Flat, b: Flat) -> f64 {
     a[0] * b[0] + a[1] * b[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_corner_that_rounding_doubled_does_not_stop_the_walk() {
+        let points = [[-1.0, -1.0], [1.0, -1.0], [1.0, -1.0 + f64::EPSILON], [1.0, 1.0], [-1.0, 1.0]];
+        let hull = 0..points.len();
+        let square = Slice { points: points.to_vec(), hulls: vec![hull], extremes: Vec::new() };
+        let angles: Vec<_> = (0..180).map(|degrees| f64::from(degrees).to_radians()).collect();
+        let areas = Slices::new(1.0, vec![square]).areas(&angles, &Cancel::new()).unwrap();
+        for (angle, area) in angles.iter().zip(areas) {
+            assert!((area - 2.0 * (angle.sin() + angle.cos().abs())).abs() < 1e-12, "{angle}: {area}");
+        }
+    }
 }
