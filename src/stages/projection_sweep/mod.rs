@@ -7,7 +7,8 @@
 //! paper's profile turns 90 planes from an arbitrary direction and counts pixels (`pixels`).
 //! Without a symmetry the first axis comes from a fallback frame: the rectilinear one (Lian et al. 2010) where the
 //! model is rectilinear, else continuous PCA (Vranic 2001); of its three axes the one with the smallest shadow, the
-//! same preference by which stage 6 ranks equal symmetries, or the one that is told apart where two are open.
+//! same preference by which stage 6 ranks equal symmetries. Where the principal axes across another one are open, all
+//! directions there are tried.
 //! Cost: one cut of the mesh serves all angles, a few milliseconds for ten thousand triangles.
 //! It does not promise a meaningful second axis for axisymmetric shadows: those are flagged and get a convention.
 

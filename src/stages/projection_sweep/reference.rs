@@ -9,7 +9,7 @@ use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 
-use super::{Options, Source, shadow, towards};
+use super::{Options, Source, shadow, towards, turn};
 
 /// The first canonical axis.
 pub(super) struct Reference {
@@ -38,15 +38,23 @@ pub(super) fn find(
     } else {
         (cpca::axes(&parsed.mesh), Source::Cpca)
     };
-    if let Some(axis) = lone_axis(&parsed.mesh, &axes).filter(|_| source == Source::Cpca) {
-        return Ok(Reference { axis, origin: centroid, source });
-    }
-    let axis = axes[smallest_shadow(parsed, &axes, options, cancel)?];
+    let axis = match lone_axis(&parsed.mesh, &axes).filter(|_| source == Source::Cpca) {
+        Some(lone) => lone_or_across(parsed, &lone, options, cancel)?,
+        None => axes[smallest_shadow(parsed, &axes, options, cancel)?],
+    };
     Ok(Reference { axis, origin: centroid, source })
 }
 
+/// Of an axis and all directions across it the one with the smallest shadow.
+fn lone_or_across(parsed: &Parsed, lone: &Vector, options: &Options, cancel: &Cancel) -> Result<Vector, Cancelled> {
+    let table = Turntable::on_model(&parsed.mesh, &parsed.measures, lone);
+    let across = turn(parsed, &table, options, cancel)?.choice;
+    let along = shadow_along(parsed, &table.u, lone, options, cancel)?;
+    Ok(if across.area < along { table.direction(across.angle) } else { *lone })
+}
+
 /// The principal axis along which the variance is another than along the two others, where it is the same along these,
-/// as about the axis of a propeller: any axes across it would be as good.
+/// as about the axis of a propeller: which axes across it are the principal ones is up to rounding.
 fn lone_axis(mesh: &Mesh, axes: &[Vector; 3]) -> Option<Vector> {
     let covariance = cpca::covariance(mesh);
     let [a, b, c] = axes.map(|axis| axis.dot(&(covariance * axis)));
