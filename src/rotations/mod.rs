@@ -113,7 +113,7 @@ impl Search<'_> {
         let isometry = self.about_centre(rotation);
         // What 500 samples say is off by 0.02 at most.
         Ok(self.field.reaches(&isometry, self.needed - 0.02).is_some()
-            && self.field.support(&isometry, Round::Full, self.cancel)? >= self.needed)
+            && self.field.support(&isometry, Round::Full, self.needed, self.cancel)? >= self.needed)
     }
 
     fn is_axis(&self, direction: &Vector) -> Result<bool, Cancelled> {

@@ -270,12 +270,14 @@ impl Merger<'_> {
             evidence::keep_confirmed(self, pool, doubt)?;
             self.keep_near_best(pool, doubt);
             pool.truncate(self.options.finalists);
+            let (mut best, next_doubt) = (0.0, if round == Round::Full { 0.0 } else { 0.02 });
             for plane in pool.iter_mut() {
-                let reflection = plane.plane.reflection();
+                let (reflection, needed) = (plane.plane.reflection(), self.near_best(best, next_doubt));
                 plane.coverage = match round {
-                    Round::Full => field.completed(&reflection, plane.coverage, self.cancel)?,
-                    _ => field.support(&reflection, round, self.cancel)?,
+                    Round::Full => field.completed(&reflection, plane.coverage, needed, self.cancel)?,
+                    _ => field.support(&reflection, round, needed, self.cancel)?,
                 };
+                best = plane.coverage.max(best);
             }
         }
         evidence::keep_confirmed(self, pool, 0.0)?;
@@ -285,8 +287,13 @@ impl Merger<'_> {
         Ok(())
     }
 
+    /// The least coverage that is reported beside the best one, where both are in doubt.
+    fn near_best(&self, best: f64, doubt: f64) -> f64 {
+        best * (1.0 - self.options.reported) - doubt
+    }
+
     fn keep_near_best(&self, pool: &mut Vec<SymmetryPlane>, doubt: f64) {
         let best = pool.iter().map(|p| p.coverage).fold(0.0, f64::max);
-        pool.retain(|p| p.coverage >= best * (1.0 - self.options.reported) - doubt && p.coverage > 0.0);
+        pool.retain(|p| p.coverage >= self.near_best(best, doubt) && p.coverage > 0.0);
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn planes(merger: &Merger) -> Result<Vec<SymmetryPlane>, Cancelled> {
     groups.retain(|g| g.volume >= largest * (1.0 - merger.options.reported));
     let measured = |g: &Group| {
         let reflection = g.leader.plane.reflection();
-        let coverage = merger.validated.field.support(&reflection, Round::Full, merger.cancel)?;
+        let coverage = merger.validated.field.support(&reflection, Round::Full, 0.0, merger.cancel)?;
         Ok(SymmetryPlane { coverage, ..merger.refitted(g.leader) })
     };
     groups.iter().map(measured).collect()

@@ -72,7 +72,8 @@ fn turns(merger: &Merger, axis: &Axis) -> Result<bool, Cancelled> {
     let (field, needed) = (&merger.validated.field, merger.options.revolution);
     for angle in TURNS {
         let turn = rotation(axis, angle);
-        if field.reaches(&turn, needed - 0.02).is_none() || field.support(&turn, Round::Middle, merger.cancel)? < needed
+        if field.reaches(&turn, needed - 0.02).is_none()
+            || field.support(&turn, Round::Middle, needed, merger.cancel)? < needed
         {
             return Ok(false);
         }
@@ -89,7 +90,7 @@ fn rotation(axis: &Axis, angle: f64) -> Isometry {
 pub(super) fn restrict(merger: &Merger, axes: &[Axis], pool: &mut Vec<SymmetryPlane>) -> Result<(), Cancelled> {
     let Some(axis) = axes.first() else { return Ok(()) };
     let turn = rotation(axis, TURNS[0]);
-    if merger.validated.field.support(&turn, Round::Middle, merger.cancel)? >= WHOLE {
+    if merger.validated.field.support(&turn, Round::Middle, WHOLE, merger.cancel)? >= WHOLE {
         pool.clear();
     } else {
         pool.retain(|p| p.coverage >= WHOLE);

@@ -114,42 +114,56 @@ impl SurfaceField {
         self.touches((&p, &normal), self.radius, recent, |_| true)
     }
 
-    /// The share of the samples that `isometry` maps onto the surface, 0 to 1.
+    /// The share of the samples that `isometry` maps onto the surface, 0 to 1; where it cannot be `needed`, something
+    /// smaller than that.
     ///
     /// # Errors
     /// When cancelled.
-    pub fn support(&self, isometry: &Isometry, round: Round, cancel: &Cancel) -> Result<f64, Cancelled> {
-        let samples = self.samples(round);
-        Ok(self.hits(isometry, samples, cancel)? as f64 / samples.len().max(1) as f64)
+    pub fn support(&self, isometry: &Isometry, round: Round, needed: f64, cancel: &Cancel) -> Result<f64, Cancelled> {
+        self.share(isometry, (0, round), 0, needed, cancel)
     }
 
     /// The full support, where that of the middle round is known: its samples are not asked again.
     ///
     /// # Errors
     /// When cancelled.
-    pub fn completed(&self, isometry: &Isometry, middle: f64, cancel: &Cancel) -> Result<f64, Cancelled> {
-        let (all, first) = (self.samples(Round::Full), self.rounds[Round::Middle as usize]);
+    pub fn completed(&self, isometry: &Isometry, middle: f64, needed: f64, cancel: &Cancel) -> Result<f64, Cancelled> {
+        let first = self.rounds[Round::Middle as usize];
         let known = (middle * first as f64).round() as usize;
-        Ok((known + self.hits(isometry, &all[first..], cancel)?) as f64 / all.len().max(1) as f64)
+        self.share(isometry, (first, Round::Full), known, needed, cancel)
     }
 
-    fn hits(&self, isometry: &Isometry, samples: &[Sample], cancel: &Cancel) -> Result<usize, Cancelled> {
-        let (mut hits, mut recent) = (0, Recent::default());
-        for chunk in samples.chunks(4096) {
+    /// The share of the samples of a round that are mapped, of which the `first` ones are known to have some `hits`.
+    fn share(
+        &self,
+        isometry: &Isometry,
+        (first, round): (usize, Round),
+        mut hits: usize,
+        needed: f64,
+        cancel: &Cancel,
+    ) -> Result<f64, Cancelled> {
+        let samples = self.samples(round);
+        let (count, mut recent) = (samples.len().max(1) as f64, Recent::default());
+        // A little less than needed, for rounding.
+        let most_missed = ((1.0 - needed) * count).ceil() as usize + 1;
+        let mut asked = first;
+        for of_face in samples[first..].chunk_by(|a, b| a.face == b.face) {
             cancel.check()?;
-            for of_face in chunk.chunk_by(|a, b| a.face == b.face) {
-                let (first, count) = (&of_face[0], of_face.len());
-                hits += if count >= FEW
-                    && (self.whole.maps(isometry, first.face, !self.oriented)
-                        || self.maps_quad(isometry, first, &mut recent))
-                {
-                    count
-                } else {
-                    of_face.iter().filter(|s| self.maps(isometry, s, &mut recent)).count()
-                };
+            hits += self.hits(isometry, of_face, &mut recent);
+            asked += of_face.len();
+            if asked - hits > most_missed {
+                break;
             }
         }
-        Ok(hits)
+        Ok(hits as f64 / count)
+    }
+
+    /// How many samples of one face are mapped.
+    fn hits(&self, isometry: &Isometry, samples: &[Sample], recent: &mut Recent) -> usize {
+        let first = &samples[0];
+        let whole = samples.len() >= FEW
+            && (self.whole.maps(isometry, first.face, !self.oriented) || self.maps_quad(isometry, first, recent));
+        if whole { samples.len() } else { samples.iter().filter(|s| self.maps(isometry, s, recent)).count() }
     }
 
     /// Whether the isometry maps a whole face onto another (or itself).
@@ -170,10 +184,14 @@ impl SurfaceField {
     pub fn reaches(&self, isometry: &Isometry, needed: f64) -> Option<f64> {
         let samples = self.samples(Round::Coarse);
         let (mut hits, mut recent) = (0, Recent::default());
+        let mut whole: Vec<Option<bool>> = vec![None; self.whole.count()];
         // A step coprime to most counts spreads also the first few samples over the whole surface.
         let step = spread_step(samples.len());
         for n in 1..=samples.len() {
-            hits += usize::from(self.maps(isometry, &samples[n * step % samples.len()], &mut recent));
+            let sample = &samples[n * step % samples.len()];
+            let maps_face = || self.whole.maps(isometry, sample.face, !self.oriented);
+            let is_whole = *whole[sample.face.index()].get_or_insert_with(maps_face);
+            hits += usize::from(is_whole || self.maps(isometry, sample, &mut recent));
             if n >= 16 && n % 8 == 0 {
                 let share = hits as f64 / n as f64;
                 let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();

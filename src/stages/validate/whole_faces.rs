@@ -45,6 +45,11 @@ impl WholeFaces {
         Self { centroids, faces, points, radius }
     }
 
+    /// Faces of the mesh.
+    pub fn count(&self) -> usize {
+        self.faces.len()
+    }
+
     /// Whether the isometry maps a face onto one other (or itself); with `both`, that may be turned inside out.
     pub fn maps(&self, isometry: &Isometry, id: PlacedFaceId, both: bool) -> bool {
         let centroid = isometry.apply(self.centroids.point(id.0));
