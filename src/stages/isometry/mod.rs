@@ -133,8 +133,11 @@ pub fn isometry(
         }
         mirrors.extend(mirror_of(outlines, (i as u32, pair), &corners, size, options));
         let [a, b] = pair.faces.map(|f| f as usize);
-        let known = |f: usize| repeated[f].shifted && repeated[f].turned;
-        if let Some(by) = (!(known(a) && known(b))).then(|| direct(outlines, pair, &corners, size, options)).flatten() {
+        let known = Repeated {
+            shifted: repeated[a].shifted && repeated[b].shifted,
+            turned: repeated[a].turned && repeated[b].turned,
+        };
+        if let Some(by) = direct(outlines, pair, &corners, known, size, options) {
             for face in [a, b] {
                 repeated[face].shifted |= by == Direct::Shift;
                 repeated[face].turned |= by == Direct::Turn;
@@ -210,15 +213,23 @@ fn is_shifted(from: &[Point], to: &[Point], tolerance: f64) -> bool {
     from.iter().zip(to).all(|(p, q)| (q - p - shift).amax() <= tolerance)
 }
 
-/// The direct isometry that maps the first face of the pair to the second, if one does.
+/// Whether the isometry that maps the points with at most the residual may turn them by less than `NO_TURN`.
+fn may_be_shifted(from: &[Point], to: &[Point], residual: f64) -> bool {
+    let extent = from.iter().map(|p| (p - from[0]).norm()).fold(0.0, f64::max);
+    // The root mean square of n distances is at least the largest one over the root of n.
+    is_shifted(from, to, NO_TURN * extent + 2.0 * (from.len() as f64).sqrt() * residual)
+}
+
+/// The direct isometry that maps the first face of the pair to the second, if one does that is not `known` of both.
 fn direct(
     outlines: &[Outline],
     pair: &FacePair,
     Corners { from, to }: &Corners,
+    known: Repeated,
     size: f64,
     options: &Options,
 ) -> Option<Direct> {
-    if !pair.is_of_two() || pair.order() == Some(Order::Reversed) {
+    if !pair.is_of_two() || pair.order() == Some(Order::Reversed) || (known.shifted && known.turned) {
         return None;
     }
     let kind = |turned: bool| if turned { Direct::Turn } else { Direct::Shift };
@@ -228,6 +239,9 @@ fn direct(
     }
     if from.len() >= 3 && is_shifted(from, to, EXACT * size) {
         return Some(Direct::Shift);
+    }
+    if known.turned && from.len() >= 3 && !may_be_shifted(from, to, options.residual * size) {
+        return None;
     }
     let (isometry, squared) = Isometry::fit(from, to, Chirality::Proper)?;
     let turned = (isometry.rotation - crate::geometry::Matrix::identity()).norm() > NO_TURN;
