@@ -109,10 +109,6 @@ fn count(bytes: i64) {
 /// given back for every model: asking the system for them would cost a tenth of the time.
 #[cfg(target_env = "gnu")]
 const LARGE: i32 = 4 << 20;
-/// Places that threads take memory from. What one stage takes another gives back, so few places keep less than one to
-/// the thread; few threads compute at the same time.
-#[cfg(target_env = "gnu")]
-const ARENAS: i32 = 2;
 
 /// Has large pieces of memory given back as soon as they are free. Left alone, glibc keeps for each thread that once
 /// freed a large piece pieces of up to that size, and a run of large models comes to twice the memory.
@@ -123,7 +119,10 @@ pub fn give_back_large_pieces() {
     unsafe {
         libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE);
         libc::mallopt(libc::M_TRIM_THRESHOLD, 4 * LARGE);
-        libc::mallopt(libc::M_ARENA_MAX, ARENAS);
+        // Places that threads take memory from. What one stage takes another gives back: a place for each model that is
+        // computed keeps less memory than one for each thread.
+        let places = std::thread::available_parallelism().map_or(2, |cores| cores.get().max(2));
+        libc::mallopt(libc::M_ARENA_MAX, places.min(1024) as i32);
     }
 }
 

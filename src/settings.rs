@@ -36,7 +36,8 @@ pub struct Limits {
     pub faces: usize,
     /// Most triangles of the mesh. Twenty million take about 1 GB.
     pub triangles: usize,
-    /// Seconds of computing for one model; 60 is a hundred times the mean.
+    /// Seconds of computing for one model; 60 is a thousand times the mean. Where other programs leave the run less than
+    /// one processor, the time on the clock counts less, down to a tenth.
     pub seconds: f64,
     /// Memory for one model, MB; 0: as much as for all together. Counted while it is computed on.
     pub model_memory_mb: u64,

@@ -42,10 +42,14 @@ pub fn by_stage(seconds: &Seconds) -> Value {
 struct Clock {
     spent: Seconds,
     running: Option<(Stage, Instant)>,
-    /// Seconds of those in which the machine was not there for the run.
+    /// Seconds of all stages at the last check, and how many of them were spent waiting for the machine.
+    checked: f64,
     starved: f64,
     passed: Option<Passed>,
 }
+
+/// The largest share of the time on the clock that does not count as computing: what waits for nothing must end, too.
+const MOST_STARVED: f64 = 0.9;
 
 /// What one model may take.
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +107,9 @@ impl Job {
         let Some((_, seconds)) = self.running() else { return };
         let starved = {
             let mut clock = self.clock();
-            clock.starved += starved;
+            // No more than what passed for this model since then.
+            clock.starved += starved.min(MOST_STARVED * (seconds - clock.checked).max(0.0));
+            clock.checked = seconds;
             clock.starved
         };
         let passed = if seconds - starved > allowed.time.as_secs_f64() {

@@ -44,9 +44,6 @@ struct Pace {
     processor: ProcessTime,
 }
 
-/// The least share of the time on the clock that counts as computing: what waits for nothing must end, too.
-const LEAST: f64 = 0.1;
-
 impl Pace {
     fn start() -> Self {
         Self { wall: Instant::now(), processor: ProcessTime::now() }
@@ -57,7 +54,7 @@ impl Pace {
         let last = std::mem::replace(self, Self::start());
         let wall = (self.wall - last.wall).as_secs_f64();
         let computed = self.processor.duration_since(last.processor).as_secs_f64();
-        (wall - computed).clamp(0.0, (1.0 - LEAST) * wall)
+        (wall - computed).max(0.0)
     }
 }
 

@@ -6,7 +6,7 @@ use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::edges::Fineness;
-use super::rings::{add_ring, wall};
+use super::rings::{WIDEST, add_ring, wall};
 
 /// How far a ring may waver, as a share of the distance to the next row.
 const LEVEL: f64 = 0.05;
@@ -30,6 +30,9 @@ pub(super) fn band(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option
     let [lower, upper] = [(band.lower, band.from), (band.upper, band.to)]
         .map(|(ring, height)| ring.map(|ring| band.add_ring(&mut patch, ring, height)));
     let places = band.columns(&patch, [&lower, &upper], columns);
+    if places.len() * rows > MOST_POINTS {
+        return None;
+    }
     let mut below = lower.unwrap_or_else(|| add_row(&mut patch, chart, along, &places, band.from));
     for row in 1..=rows {
         let above = match &upper {
@@ -130,10 +133,18 @@ impl<'a> Band<'a> {
     /// Where the columns between the rings lie: at the points of the denser ring where these suffice.
     fn columns(&self, patch: &Patch, rings: [&Option<Vec<u32>>; 2], least: usize) -> Vec<f64> {
         match rings.into_iter().flatten().max_by_key(|chain| chain.len()) {
-            Some(chain) if chain.len() > least => chain.iter().map(|&i| patch.uv[i as usize][0]).collect(),
+            Some(chain) if suffices(patch, chain, WIDEST * self.period / least as f64) => {
+                chain.iter().map(|&i| patch.uv[i as usize][0]).collect()
+            }
             _ => (0..=least).map(|k| self.start + self.period * k as f64 / least as f64).collect(),
         }
     }
+}
+
+/// Whether no two neighbours of a chain are farther apart than `widest`.
+fn suffices(patch: &Patch, chain: &[u32], widest: f64) -> bool {
+    let place = |i: u32| patch.uv[i as usize][0];
+    chain.windows(2).all(|pair| (place(pair[1]) - place(pair[0])).abs() <= widest)
 }
 
 /// Adds a row of points, the first one repeated at the end.

@@ -8,7 +8,7 @@ use super::triangulate::zip;
 use crate::geometry::{Point2, polygon};
 
 /// How much wider than a step of the curvature triangles may be.
-const WIDEST: f64 = 2.2;
+pub(super) const WIDEST: f64 = 2.2;
 
 /// The wall, where two rings bound one and neither turns back on its way round.
 pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option<Patch> {

@@ -277,7 +277,10 @@ impl Merger<'_> {
                     Round::Full => field.completed(&reflection, plane.coverage, needed, self.cancel)?,
                     _ => field.support(&reflection, round, needed, self.cancel)?,
                 };
-                best = plane.coverage.max(best);
+                // Others may still be dropped, and the bound with them.
+                if plane.coverage >= self.options.near_global {
+                    best = plane.coverage.max(best);
+                }
             }
         }
         evidence::keep_confirmed(self, pool, 0.0)?;

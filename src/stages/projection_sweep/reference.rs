@@ -9,7 +9,7 @@ use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 
-use super::{Options, Source, shadow, towards, turn};
+use super::{AreaBy, Options, SecondAxis, Source, shadow, towards, turn};
 
 /// The first canonical axis.
 pub(super) struct Reference {
@@ -48,6 +48,8 @@ pub(super) fn find(
 /// Of an axis and all directions across it the one with the smallest shadow.
 fn lone_or_across(parsed: &Parsed, lone: &Vector, options: &Options, cancel: &Cancel) -> Result<Vector, Cancelled> {
     let table = Turntable::on_model(&parsed.mesh, &parsed.measures, lone);
+    // By the same measure as the shadow along the axis, whatever turns the second axis.
+    let options = &Options { area_by: AreaBy::Spans, second_axis: SecondAxis::Sweep, ..options.clone() };
     let across = turn(parsed, &table, options, cancel)?.choice;
     let along = shadow_along(parsed, &table.u, lone, options, cancel)?;
     Ok(if across.area < along { table.direction(across.angle) } else { *lone })

@@ -128,7 +128,7 @@ impl<'a> FaceSamples<'a> {
         let near = far.min(self.options.distance_95 * self.size);
         let samples = self.of(a);
         let target = &self.outlines[b as usize];
-        let small = target.area <= SMALL * near * near;
+        let small = target.area <= SMALL * near * near && self.triangles_of(target).count() <= FEW_TRIANGLES;
         let (mut outside, mut recent) = (0, Recent::default());
         for (p, n) in samples.iter() {
             let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
@@ -149,10 +149,14 @@ impl<'a> FaceSamples<'a> {
         true
     }
 
+    fn triangles_of(&self, outline: &'a Outline) -> impl Iterator<Item = usize> {
+        outline.faces.iter().flat_map(|&f| self.parsed.mesh.triangles_of(f))
+    }
+
     /// Whether an outline has a point within `radius` of `p` with this normal, triangle by triangle.
     fn is_on(&self, outline: &Outline, (p, normal): (&Point, &Vector), radius: f64, field: &SurfaceField) -> bool {
         let mesh = &self.parsed.mesh;
-        outline.faces.iter().flat_map(|&f| mesh.triangles_of(f)).any(|t| {
+        self.triangles_of(outline).any(|t| {
             (nearest_on_triangle(p, &mesh.corners(t)) - p).norm_squared() <= radius * radius
                 && mesh.doubled_normal(t).try_normalize(0.0).is_some_and(|n| field.agree(&n, normal))
         })
@@ -161,5 +165,7 @@ impl<'a> FaceSamples<'a> {
 
 /// Up to this share of the radius squared the area of a face is small: the tree would show all that is around it.
 const SMALL: f64 = 4.0;
+/// .. and up to so many triangles it is asked itself.
+const FEW_TRIANGLES: usize = 64;
 /// Faces with more inner loops (a plate with hundreds of holes) are judged by their surfaces alone.
 const INNER: usize = 256;

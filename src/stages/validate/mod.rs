@@ -6,9 +6,11 @@
 //! 6), which is undefined for walls parallel to the plane and blind to shifts along it; the default compares the
 //! distances by the one-dimensional Wasserstein distance, then the mirrored samples of each face with the surface of
 //! the other, then the inner loops (`faces`). Before that, candidates are joined into distinct planes, and planes
-//! whose coarse surface support (`support`) is far below the best are dropped.
+//! whose coarse surface support (`support`) is far below the best are dropped. Faces that a plane maps onto whole faces
+//! (`whole_faces`, `quads`) need no look at their samples.
 //!
-//! Cost: a few hundred queries of the triangle tree for each plane that is kept, some tens for each that is dropped.
+//! Cost: a look-up for each face and, for the samples of the others, a query of the triangle tree: a few hundred for each
+//! plane that is kept, some tens for each that is dropped.
 
 pub mod faces;
 mod quads;

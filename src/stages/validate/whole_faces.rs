@@ -7,7 +7,7 @@ use crate::geometry::{Isometry, Point, PointGrid, Vector};
 const LOOKS: usize = 64;
 /// Areas of images differ by this share at most ..
 const AREA: f64 = 1e-3;
-/// .. and the integrals of their normals by this share of the area: what bends the other way is no image.
+/// .. and the integrals of their normals by this share of the area.
 const NORMALS: f64 = 1e-2;
 
 /// What is needed to tell that one face is the image of another one: centroid, area, normals, and where the points of
@@ -26,6 +26,9 @@ struct Face {
     area: f64,
     /// Integral of the normals, mm^2.
     normals: Vector,
+    /// Integral of the distance from the centroid along the normals, mm^3: no isometry changes it, and what bends the
+    /// other way has the opposite.
+    bulge: f64,
     /// In `points`.
     points: std::ops::Range<u32>,
 }
@@ -36,10 +39,16 @@ impl WholeFaces {
         let (mut faces, mut points) = (Vec::with_capacity(mesh.faces.len()), Vec::new());
         for (i, face) in mesh.faces.iter().enumerate() {
             let id = PlacedFaceId(i as u32);
-            let normals = mesh.triangles_of(id).map(|t| mesh.doubled_normal(t)).sum::<Vector>() * 0.5;
+            let (mut normals, mut bulge) = (Vector::zeros(), 0.0);
+            for t in mesh.triangles_of(id) {
+                let normal = mesh.doubled_normal(t) * 0.5;
+                normals += normal;
+                // The same at all points of the triangle.
+                bulge += (mesh.corners(t)[0] - face.centroid).dot(&normal);
+            }
             let (first, of_face) = (points.len() as u32, mesh.points_of(id));
             points.extend_from_slice(of_face);
-            faces.push(Face { area: face.area, normals, points: first..points.len() as u32 });
+            faces.push(Face { area: face.area, normals, bulge, points: first..points.len() as u32 });
         }
         let centroids = PointGrid::new(mesh.faces.iter().map(|f| f.centroid), 8.0 * radius);
         Self { centroids, faces, points, radius }
@@ -68,10 +77,13 @@ impl WholeFaces {
         let (face, other) = (&self.faces[a.index()], &self.faces[b.index()]);
         let (points, others) = (self.points_of(face), self.points_of(other));
         let normals = isometry.rotation * face.normals;
-        let differ = |other: Vector| (normals - other).norm() > NORMALS * face.area;
+        let agree = |sign: f64| {
+            (normals - other.normals * sign).norm() <= NORMALS * face.area
+                && (face.bulge - other.bulge * sign).abs() <= self.radius * face.area + NORMALS * face.bulge.abs()
+        };
         (face.area - other.area).abs() <= AREA * face.area
             && points.len() == others.len()
-            && (!differ(other.normals) || (both && !differ(-other.normals)))
+            && (agree(1.0) || (both && agree(-1.0)))
             && self.meet(isometry, points, others)
     }
 
@@ -123,6 +135,40 @@ mod tests {
             });
         }
         mesh
+    }
+
+    #[test]
+    fn a_pin_is_no_image_of_a_hole() {
+        // Half of an octahedron without its base, and the same to the left of x = 0; closed to the eye of the normals.
+        let tent = |x: f64| {
+            let ring = [[x - 1.0, 0.0, 0.0], [x, -1.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]];
+            (0..8).map(move |i| {
+                let (p, q) = (ring[i % 4], ring[(i + 1) % 4]);
+                if i < 4 { [p, q, [x, 0.0, 1.0]] } else { [q, p, [x, 0.0, -1.0]] }
+            })
+        };
+        let one_face = |right: Vec<[[f64; 3]; 3]>, left: Vec<[[f64; 3]; 3]>| {
+            let mut mesh = mesh(&[right, left].concat());
+            for i in [0, 1] {
+                let first = &mesh.faces[8 * i];
+                let whole = MeshFace {
+                    points: first.points.start..first.points.start + 24,
+                    triangles: first.triangles.start..first.triangles.start + 8,
+                    area: 8.0 * first.area,
+                    centroid: Point::new([5.0, -5.0][i], 0.0, 0.0),
+                    ..first.clone()
+                };
+                mesh.faces[i] = whole;
+            }
+            mesh.faces.truncate(2);
+            mesh
+        };
+        let turned = |t: [[f64; 3]; 3]| [t[1], t[0], t[2]];
+        let mirror = Plane { normal: Vector::x(), offset: 0.0 }.reflection();
+        let pins = WholeFaces::of(&one_face(tent(5.0).collect(), tent(-5.0).collect()), 1e-3);
+        assert!(pins.maps(&mirror, PlacedFaceId(0), false));
+        let hole = WholeFaces::of(&one_face(tent(5.0).collect(), tent(-5.0).map(turned).collect()), 1e-3);
+        assert!(!hole.maps(&mirror, PlacedFaceId(0), false) && hole.maps(&mirror, PlacedFaceId(0), true));
     }
 
     #[test]
