@@ -63,7 +63,7 @@ pub struct Run {
     /// Folder of the store
     #[arg(long, value_name = "DIR")]
     pub store: Option<PathBuf>,
-    /// Models computed at the same time [default: one for each core]
+    /// Models computed at the same time, and a quarter more where there are several [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: Option<u16>,
     /// Take only the K-th of N parts of the inputs

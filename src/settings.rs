@@ -80,7 +80,7 @@ pub struct Settings {
     pub report: PathBuf,
     /// Frames to compute and compare, the first one the default of `query`.
     pub methods: Vec<Method>,
-    /// Models computed at the same time; 0: one for each core.
+    /// Models computed at the same time, and a quarter more where there are several; 0: one for each core.
     pub jobs: usize,
     /// Gives every model a random rigid motion after reading, fixed by this seed and the model's bytes.
     pub random_pose: Option<u64>,

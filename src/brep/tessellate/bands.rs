@@ -6,7 +6,7 @@ use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::edges::Fineness;
-use super::rings::{WIDEST, add_ring, wall};
+use super::rings::{WIDEST, add_ring, level, sides, wall};
 
 /// How far a ring may waver, as a share of the distance to the next row.
 const LEVEL: f64 = 0.05;
@@ -44,9 +44,7 @@ pub(super) fn band(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option
         below = above;
     }
     patch.uv.iter_mut().for_each(|st| *st = back(*st, along));
-    // The lower ring has the face on its left where it runs towards growing s.
-    let side = |ring: &Path| if band.lower.is_some_and(|lower| std::ptr::eq(lower, ring)) { 1 } else { -1 };
-    patch.sides = rings.iter().map(|ring| f64::from(side(ring) * ring.winding[0])).collect();
+    patch.sides = sides(&rings, band.lower);
     Some(patch)
 }
 
@@ -66,11 +64,6 @@ fn turned(path: &Path, along: usize) -> Path {
     let winding = if along == 0 { [a, b] } else { [b, -a] };
     let uv = path.uv.iter().map(|&uv| turn(uv, along)).collect();
     Path { points: path.points.clone(), uv, middles: Vec::new(), winding }
-}
-
-/// The mean height of a ring.
-fn level(ring: &Path) -> f64 {
-    ring.uv.iter().map(|st| st[1]).sum::<f64>() / ring.uv.len() as f64
 }
 
 fn waver(ring: &Path) -> f64 {

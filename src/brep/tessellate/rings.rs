@@ -18,17 +18,25 @@ pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Finene
     if !once || !chart.surface.is_ruled_along_v() {
         return None;
     }
-    let height = |p: &Path| p.uv.iter().map(|uv| uv[1]).sum::<f64>() / p.uv.len() as f64;
-    let (low, high) = if height(a) < height(b) { (a, b) } else { (b, a) };
+    let (low, high) = if level(a) < level(b) { (a, b) } else { (b, a) };
     let mut patch = Patch::default();
     let [lower, upper] = [low, high].map(|p| add_ring(&mut patch, p, period, low.uv[0][0]));
     let [_, _, v0, v1] = rectangle(patch.uv.iter());
     let steps = chart.steps([0.0, period, v0, v1], fineness)[0].max(3);
     patch.triangles = wall(&patch.uv, &lower, &upper, WIDEST * period / steps as f64)?;
-    // Going round in the direction of u, the lower ring has the face on its left.
-    let side = |path: &Path| f64::from(if std::ptr::eq(path, low) { path.winding[0] } else { -path.winding[0] });
-    patch.sides = vec![side(a), side(b)];
+    patch.sides = sides(paths, Some(low));
     Some(patch)
+}
+
+/// The mean height of a ring.
+pub(super) fn level(ring: &Path) -> f64 {
+    ring.uv.iter().map(|uv| uv[1]).sum::<f64>() / ring.uv.len() as f64
+}
+
+/// On which side of each ring the face lies: of the lower one on the left, where that runs towards growing parameters.
+pub(super) fn sides(rings: &[Path], lower: Option<&Path>) -> Vec<f64> {
+    let is_lower = |ring: &Path| lower.is_some_and(|lower| std::ptr::eq(lower, ring));
+    rings.iter().map(|ring| f64::from(if is_lower(ring) { ring.winding[0] } else { -ring.winding[0] })).collect()
 }
 
 /// The triangles between two chains, where both run towards growing u and none is wider than `widest`.

@@ -237,10 +237,13 @@ fn direct(
         let [a, b] = pair.faces.map(|f| outlines[f as usize].axis);
         return Some(kind(a.zip(b).is_some_and(|(p, q)| p.direction.cross(&q.direction).norm() > NO_TURN)));
     }
-    if from.len() >= 3 && is_shifted(from, to, EXACT * size) {
+    if from.len() < 3 {
+        return None;
+    }
+    if is_shifted(from, to, EXACT * size) {
         return Some(Direct::Shift);
     }
-    if known.turned && from.len() >= 3 && !may_be_shifted(from, to, options.residual * size) {
+    if known.turned && !may_be_shifted(from, to, options.residual * size) {
         return None;
     }
     let (isometry, squared) = Isometry::fit(from, to, Chirality::Proper)?;

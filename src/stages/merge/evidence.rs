@@ -18,45 +18,89 @@ const MOST: f64 = 0.8;
 /// Samples of a face that must lie on its image: the centroids and areas agree already.
 const SAMPLES: usize = 12;
 
-/// Adds pairs and self-symmetric faces to the planes, as far as the bound on planes times faces allows.
-pub(super) fn add(merger: &Merger, planes: &mut [SymmetryPlane]) -> Result<(), Cancelled> {
-    let count = (merger.options.evidence / merger.outlines.len().max(1)).max(1);
-    let options = validate::Options { face_samples: SAMPLES, ..validate::Options::default() };
-    let mut samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, &options, SAMPLES);
-    let grid = grid(merger);
-    for plane in planes.iter_mut().take(count) {
-        merger.cancel.check()?;
-        let faces = images(merger, &plane.plane, &grid, &mut samples);
-        (plane.pairs, plane.selfs) = step_faces(merger, &plane.plane, &faces);
-    }
-    Ok(())
+/// How faces are compared with their images.
+pub(super) fn look_up() -> validate::Options {
+    validate::Options { face_samples: SAMPLES, ..validate::Options::default() }
 }
 
-/// Drops the planes below `near_global` (by more than `doubt`) for which too few faces speak. The pool is sorted, best
-/// first; planes beyond the bound on planes times faces are not looked at and go.
-pub(super) fn keep_confirmed(merger: &Merger, pool: &mut Vec<SymmetryPlane>, doubt: f64) -> Result<(), Cancelled> {
-    let (options, best) = (merger.options, pool.first().map_or(0.0, |p| p.coverage));
-    // While one plane is beyond doubt, most of the others fall behind it; those that stay are looked at in the end.
-    let limit = if doubt > 0.0 && best >= options.near_global + doubt { 0.0 } else { options.near_global - doubt };
-    let mut room = (options.evidence / merger.outlines.len().max(1)).max(1);
-    let look_up = validate::Options { face_samples: SAMPLES, ..validate::Options::default() };
-    let mut samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, &look_up, SAMPLES);
-    let grid = grid(merger);
-    let mut kept = Vec::new();
-    for plane in pool.drain(..) {
-        merger.cancel.check()?;
-        if plane.coverage >= limit {
-            kept.push(plane);
-        } else if room > 0 {
-            room -= 1;
-            let faces = images(merger, &plane.plane, &grid, &mut samples);
-            if is_confirmed(merger, &plane, &faces) {
+/// Which faces of a model are each other's images: where their centroids are, and the samples drawn so far.
+pub(super) struct Images<'a> {
+    merger: &'a Merger<'a>,
+    centroids: PointGrid,
+    samples: FaceSamples<'a>,
+}
+
+impl<'a> Images<'a> {
+    /// Nothing is drawn yet.
+    pub fn of(merger: &'a Merger<'a>, look_up: &'a validate::Options) -> Self {
+        let width = 4.0 * merger.parsed.measures.tolerance.length(NEAR);
+        let centroids = PointGrid::new(merger.outlines.iter().map(|o| o.centroid), width);
+        let samples = FaceSamples::with_fewest(merger.parsed, merger.outlines, look_up, SAMPLES);
+        Self { merger, centroids, samples }
+    }
+
+    /// Planes for which the faces may be looked up.
+    fn room(&self) -> usize {
+        (self.merger.options.evidence / self.merger.outlines.len().max(1)).max(1)
+    }
+
+    /// Adds pairs and self-symmetric faces to the planes, as far as the bound on planes times faces allows.
+    pub fn add_to(&mut self, planes: &mut [SymmetryPlane]) -> Result<(), Cancelled> {
+        let room = self.room();
+        for plane in planes.iter_mut().take(room) {
+            self.merger.cancel.check()?;
+            let faces = self.pairs(&plane.plane);
+            (plane.pairs, plane.selfs) = step_faces(self.merger, &plane.plane, &faces);
+        }
+        Ok(())
+    }
+
+    /// Drops the planes below `near_global` (by more than `doubt`) for which too few faces speak. The pool is sorted,
+    /// best first; planes beyond the bound on planes times faces are not looked at and go.
+    pub fn keep_confirmed(&mut self, pool: &mut Vec<SymmetryPlane>, doubt: f64) -> Result<(), Cancelled> {
+        let (options, best) = (self.merger.options, pool.first().map_or(0.0, |p| p.coverage));
+        // While one plane is beyond doubt, most of the others fall behind it; those that stay are looked at in the end.
+        let limit = if doubt > 0.0 && best >= options.near_global + doubt { 0.0 } else { options.near_global - doubt };
+        let mut room = self.room();
+        let mut kept = Vec::new();
+        for plane in pool.drain(..) {
+            self.merger.cancel.check()?;
+            if plane.coverage >= limit {
                 kept.push(plane);
+            } else if room > 0 {
+                room -= 1;
+                let faces = self.pairs(&plane.plane);
+                if is_confirmed(self.merger, &plane, &faces) {
+                    kept.push(plane);
+                }
             }
         }
+        *pool = kept;
+        Ok(())
     }
-    *pool = kept;
-    Ok(())
+
+    /// Pairs (a, b), a <= b, of outlines that are each other's image.
+    fn pairs(&mut self, plane: &Plane) -> Vec<(u32, u32)> {
+        let (outlines, field) = (self.merger.outlines, &self.merger.validated.field);
+        let radius = self.merger.parsed.measures.tolerance.length(NEAR);
+        let mut taken = vec![false; outlines.len()];
+        let mut pairs = Vec::new();
+        for a in 0..outlines.len() as u32 {
+            if taken[a as usize] {
+                continue;
+            }
+            let image = plane.reflect(&outlines[a as usize].centroid);
+            let unmatched = |&b: &u32| b >= a && !taken[b as usize];
+            let mut near: Vec<_> = self.centroids.near(&image, radius).filter(unmatched).collect();
+            let distance = |b: u32| (outlines[b as usize].centroid - image).norm();
+            near.sort_by(|&b, &c| distance(b).total_cmp(&distance(c)).then(b.cmp(&c)));
+            if let Some(b) = near.into_iter().find(|&b| self.samples.maps_onto(a, b, plane, field)) {
+                (taken[a as usize], taken[b as usize]) = (true, true);
+                pairs.push((a, b));
+            }
+        }
+        pairs
+    }
 }
 
 /// Whether the faces that the plane maps onto faces make up enough of what it maps onto the surface. A single pair of
@@ -73,34 +117,6 @@ fn is_confirmed(merger: &Merger, plane: &SymmetryPlane, faces: &[(u32, u32)]) ->
     let needed = (merger.options.confirmed * plane.coverage).max(merger.options.partial);
     let speak = pairs >= 2 || (plane.coverage >= MOST && pairs + alone.len() >= 3);
     speak && area >= needed * merger.parsed.measures.area
-}
-
-/// Outlines by where their centroids are.
-fn grid(merger: &Merger) -> PointGrid {
-    let width = 4.0 * merger.parsed.measures.tolerance.length(NEAR);
-    PointGrid::new(merger.outlines.iter().map(|o| o.centroid), width)
-}
-
-/// Pairs (a, b), a <= b, of outlines that are each other's image.
-fn images(merger: &Merger, plane: &Plane, grid: &PointGrid, samples: &mut FaceSamples) -> Vec<(u32, u32)> {
-    let radius = merger.parsed.measures.tolerance.length(NEAR);
-    let mut taken = vec![false; merger.outlines.len()];
-    let mut pairs = Vec::new();
-    for a in 0..merger.outlines.len() as u32 {
-        if taken[a as usize] {
-            continue;
-        }
-        let image = plane.reflect(&merger.outlines[a as usize].centroid);
-        let mut near: Vec<_> = grid.near(&image, radius).filter(|&b| b >= a && !taken[b as usize]).collect();
-        let distance = |b: u32| (merger.outlines[b as usize].centroid - image).norm();
-        near.sort_by(|&b, &c| distance(b).total_cmp(&distance(c)).then(b.cmp(&c)));
-        let field = &merger.validated.field;
-        if let Some(b) = near.into_iter().find(|&b| samples.maps_onto(a, b, plane, field)) {
-            (taken[a as usize], taken[b as usize]) = (true, true);
-            pairs.push((a, b));
-        }
-    }
-    pairs
 }
 
 /// Pairs of faces, and faces that are their own image.

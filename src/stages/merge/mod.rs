@@ -22,6 +22,8 @@ mod silhouette;
 #[cfg(test)]
 mod tests;
 
+use evidence::Images;
+
 use crate::brep::PlacedFaceId;
 use crate::cancel::{Cancel, Cancelled};
 pub use crate::geometry::Axis;
@@ -172,6 +174,10 @@ pub fn merge(
     merger.run().map_err(|c| ModelError::cancelled(Stage::Merge, c))
 }
 
+/// Three standard deviations of a share measured by 500 samples, and by 4,000.
+const COARSE_DOUBT: f64 = 0.06;
+const MIDDLE_DOUBT: f64 = 0.02;
+
 /// What the steps of the stage share.
 struct Merger<'a> {
     parsed: &'a Parsed,
@@ -184,18 +190,20 @@ struct Merger<'a> {
 
 impl Merger<'_> {
     fn run(&self) -> Result<Symmetries, Cancelled> {
+        let look_up = evidence::look_up();
+        let mut images = Images::of(self, &look_up);
         let (planes, axes) = if self.options.paper {
             (paper::planes(self)?, Vec::new())
         } else {
             let axes = revolution::axes(self)?;
             let mut pool = self.pool(&axes)?;
-            self.measure(&mut pool)?;
+            self.measure(&mut pool, &mut images)?;
             (rank::ordered(self, pool), axes)
         };
         let best = planes.first().map_or(0.0, |p| p.coverage);
         let label = self.label(best);
         let mut planes = if label == Label::None { Vec::new() } else { planes };
-        evidence::add(self, &mut planes)?;
+        images.add_to(&mut planes)?;
         Ok(Symmetries { label, planes, axes, repeats: self.validated.repeats })
     }
 
@@ -261,32 +269,38 @@ impl Merger<'_> {
     }
 
     /// Replaces the coarse support of the best planes by the full one and drops the others.
-    fn measure(&self, pool: &mut Vec<SymmetryPlane>) -> Result<(), Cancelled> {
-        let field = &self.validated.field;
-        // Three standard deviations of a share measured by 500 and by 4,000 samples.
-        for (round, doubt) in [(Round::Middle, 0.06), (Round::Full, 0.02)] {
+    fn measure(&self, pool: &mut Vec<SymmetryPlane>, images: &mut Images) -> Result<(), Cancelled> {
+        // What a coverage is in doubt by before the round and after it.
+        for (round, doubts) in [(Round::Middle, [COARSE_DOUBT, MIDDLE_DOUBT]), (Round::Full, [MIDDLE_DOUBT, 0.0])] {
             pool.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
             // A plane that is out of the question must not push others out.
-            evidence::keep_confirmed(self, pool, doubt)?;
-            self.keep_near_best(pool, doubt);
+            images.keep_confirmed(pool, doubts[0])?;
+            self.keep_near_best(pool, doubts[0]);
             pool.truncate(self.options.finalists);
-            let (mut best, next_doubt) = (0.0, if round == Round::Full { 0.0 } else { 0.02 });
-            for plane in pool.iter_mut() {
-                let (reflection, needed) = (plane.plane.reflection(), self.near_best(best, next_doubt));
-                plane.coverage = match round {
-                    Round::Full => field.completed(&reflection, plane.coverage, needed, self.cancel)?,
-                    _ => field.support(&reflection, round, needed, self.cancel)?,
-                };
-                // Others may still be dropped, and the bound with them.
-                if plane.coverage >= self.options.near_global {
-                    best = plane.coverage.max(best);
-                }
-            }
+            self.measure_round(pool, round, doubts[1])?;
         }
-        evidence::keep_confirmed(self, pool, 0.0)?;
+        images.keep_confirmed(pool, 0.0)?;
         // Faces speak for the other sources; across a principal axis a small share fits by accident.
         pool.retain(|p| p.source != Source::Principal || p.coverage >= self.options.near_global);
         self.keep_near_best(pool, 0.0);
+        Ok(())
+    }
+
+    /// Measures all planes by the samples of a round; a plane only as far as it may be near the best, in spite of the
+    /// `doubt` of the round.
+    fn measure_round(&self, pool: &mut [SymmetryPlane], round: Round, doubt: f64) -> Result<(), Cancelled> {
+        let (field, mut best) = (&self.validated.field, 0.0);
+        for plane in pool {
+            let (reflection, needed) = (plane.plane.reflection(), self.near_best(best, doubt));
+            plane.coverage = match round {
+                Round::Full => field.completed(&reflection, plane.coverage, needed, self.cancel)?,
+                _ => field.support(&reflection, round, needed, self.cancel)?,
+            };
+            // Others may still be dropped, and the bound with them.
+            if plane.coverage >= self.options.near_global {
+                best = plane.coverage.max(best);
+            }
+        }
         Ok(())
     }
 

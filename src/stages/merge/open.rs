@@ -70,8 +70,7 @@ pub(super) fn missed(merger: &Merger, isometry: &Isometry) -> Option<usize> {
     let most = ((1.0 - SHARE) * asked.len() as f64) as usize;
     let (mut missed, mut recent) = (0, Recent::default());
     for sample in asked {
-        let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
-        missed += usize::from(!field.touches((&p, &normal), radius, &mut recent, |_| true));
+        missed += usize::from(!field.maps_near(isometry, sample, radius, &mut recent));
         if missed > most {
             return None;
         }

@@ -39,7 +39,7 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
         normals.extend(open.promising(merger)?);
     }
     // Without faces that speak for it, a plane that misses much of the surface is an accident.
-    let needed = (merger.options.near_global - 0.05).max(best - ROUGH);
+    let needed = merger.options.near_global.max(best) - ROUGH;
     for normal in normals {
         merger.cancel.check()?;
         let is_known = |plane: &Plane| {

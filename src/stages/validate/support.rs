@@ -62,7 +62,7 @@ impl SurfaceField {
         Self {
             tree,
             quads: Quads::of(mesh),
-            whole: WholeFaces::of(mesh, SAME * radius),
+            whole: WholeFaces::of(mesh, SAME * radius, !oriented),
             samples,
             rounds,
             radius,
@@ -108,10 +108,15 @@ impl SurfaceField {
         self.tree.any_around(&around, recent, |t| self.agree(&t.normal, normal) && accept(PlacedFaceId(t.id)))
     }
 
-    /// Whether the isometry maps a sample onto the surface. `recent` as in [`Bvh::any_around`].
-    fn maps(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
+    /// Whether the isometry maps a sample to within `radius` of the surface. `recent` as in [`Bvh::any_around`].
+    pub fn maps_near(&self, isometry: &Isometry, sample: &Sample, radius: f64, recent: &mut Recent) -> bool {
         let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
-        self.touches((&p, &normal), self.radius, recent, |_| true)
+        self.touches((&p, &normal), radius, recent, |_| true)
+    }
+
+    /// Whether the isometry maps a sample onto the surface.
+    fn maps(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
+        self.maps_near(isometry, sample, self.radius, recent)
     }
 
     /// The share of the samples that `isometry` maps onto the surface, 0 to 1; where it cannot be `needed`, something
@@ -161,14 +166,14 @@ impl SurfaceField {
     /// How many samples of one face are mapped.
     fn hits(&self, isometry: &Isometry, samples: &[Sample], recent: &mut Recent) -> usize {
         let first = &samples[0];
-        let whole = samples.len() >= FEW
-            && (self.whole.maps(isometry, first.face, !self.oriented) || self.maps_quad(isometry, first, recent));
+        let whole =
+            samples.len() >= FEW && (self.whole.maps(isometry, first.face) || self.maps_quad(isometry, first, recent));
         if whole { samples.len() } else { samples.iter().filter(|s| self.maps(isometry, s, recent)).count() }
     }
 
     /// Whether the isometry maps a whole face onto another (or itself).
     pub fn maps_onto(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId) -> bool {
-        self.whole.maps_onto(isometry, a, b, !self.oriented)
+        self.whole.maps_onto(isometry, a, b)
     }
 
     /// Whether the whole face of a sample is mapped onto one other, which can be told of a quadrilateral by its corners.
@@ -189,7 +194,7 @@ impl SurfaceField {
         let step = spread_step(samples.len());
         for n in 1..=samples.len() {
             let sample = &samples[n * step % samples.len()];
-            let maps_face = || self.whole.maps(isometry, sample.face, !self.oriented);
+            let maps_face = || self.whole.maps(isometry, sample.face);
             let is_whole = *whole[sample.face.index()].get_or_insert_with(maps_face);
             hits += usize::from(is_whole || self.maps(isometry, sample, &mut recent));
             if n >= 16 && n % 8 == 0 {

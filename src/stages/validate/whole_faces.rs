@@ -19,6 +19,8 @@ pub struct WholeFaces {
     points: Vec<Point>,
     /// How far images may be off, mm.
     radius: f64,
+    /// Whether an image may be turned inside out.
+    both: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -29,29 +31,30 @@ struct Face {
     /// Integral of the distance from the centroid along the normals, mm^3: no isometry changes it, and what bends the
     /// other way has the opposite.
     bulge: f64,
-    /// In `points`.
+    /// In [`WholeFaces::points`].
     points: std::ops::Range<u32>,
 }
 
-impl WholeFaces {
-    /// The faces of a mesh; images may be off by `radius`, mm.
-    pub fn of(mesh: &Mesh, radius: f64) -> Self {
-        let (mut faces, mut points) = (Vec::with_capacity(mesh.faces.len()), Vec::new());
-        for (i, face) in mesh.faces.iter().enumerate() {
-            let id = PlacedFaceId(i as u32);
-            let (mut normals, mut bulge) = (Vector::zeros(), 0.0);
-            for t in mesh.triangles_of(id) {
-                let normal = mesh.doubled_normal(t) * 0.5;
-                normals += normal;
-                // The same at all points of the triangle.
-                bulge += (mesh.corners(t)[0] - face.centroid).dot(&normal);
-            }
-            let (first, of_face) = (points.len() as u32, mesh.points_of(id));
-            points.extend_from_slice(of_face);
-            faces.push(Face { area: face.area, normals, bulge, points: first..points.len() as u32 });
+impl Face {
+    fn of(mesh: &Mesh, id: PlacedFaceId) -> Self {
+        let face = &mesh.faces[id.index()];
+        let (mut normals, mut bulge) = (Vector::zeros(), 0.0);
+        for t in mesh.triangles_of(id) {
+            let normal = mesh.doubled_normal(t) * 0.5;
+            normals += normal;
+            // The same at all points of the triangle.
+            bulge += (mesh.corners(t)[0] - face.centroid).dot(&normal);
         }
+        Self { area: face.area, normals, bulge, points: face.points.clone() }
+    }
+}
+
+impl WholeFaces {
+    /// The faces of a mesh; images may be off by `radius`, mm, and turned inside out if `both` sides are alike.
+    pub fn of(mesh: &Mesh, radius: f64, both: bool) -> Self {
+        let faces = (0..mesh.faces.len() as u32).map(|i| Face::of(mesh, PlacedFaceId(i))).collect();
         let centroids = PointGrid::new(mesh.faces.iter().map(|f| f.centroid), 8.0 * radius);
-        Self { centroids, faces, points, radius }
+        Self { centroids, faces, points: mesh.points.clone(), radius, both }
     }
 
     /// Faces of the mesh.
@@ -59,21 +62,21 @@ impl WholeFaces {
         self.faces.len()
     }
 
-    /// Whether the isometry maps a face onto one other (or itself); with `both`, that may be turned inside out.
-    pub fn maps(&self, isometry: &Isometry, id: PlacedFaceId, both: bool) -> bool {
+    /// Whether the isometry maps a face onto one other (or itself).
+    pub fn maps(&self, isometry: &Isometry, id: PlacedFaceId) -> bool {
         let centroid = isometry.apply(self.centroids.point(id.0));
         let mut near = self.centroids.near(&centroid, self.radius);
-        near.any(|other| self.is_image(isometry, id, PlacedFaceId(other), both))
+        near.any(|other| self.is_image(isometry, id, PlacedFaceId(other)))
     }
 
     /// Whether the isometry maps face `a` onto face `b`.
-    pub fn maps_onto(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId, both: bool) -> bool {
+    pub fn maps_onto(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId) -> bool {
         let centroid = isometry.apply(self.centroids.point(a.0));
-        (self.centroids.point(b.0) - centroid).norm() <= self.radius && self.is_image(isometry, a, b, both)
+        (self.centroids.point(b.0) - centroid).norm() <= self.radius && self.is_image(isometry, a, b)
     }
 
     /// The same of faces with matching centroids.
-    fn is_image(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId, both: bool) -> bool {
+    fn is_image(&self, isometry: &Isometry, a: PlacedFaceId, b: PlacedFaceId) -> bool {
         let (face, other) = (&self.faces[a.index()], &self.faces[b.index()]);
         let (points, others) = (self.points_of(face), self.points_of(other));
         let normals = isometry.rotation * face.normals;
@@ -83,7 +86,7 @@ impl WholeFaces {
         };
         (face.area - other.area).abs() <= AREA * face.area
             && points.len() == others.len()
-            && (agree(1.0) || (both && agree(-1.0)))
+            && (agree(1.0) || (self.both && agree(-1.0)))
             && self.meet(isometry, points, others)
     }
 
@@ -139,8 +142,8 @@ mod tests {
 
     #[test]
     fn a_pin_is_no_image_of_a_hole() {
-        // Half of an octahedron without its base, and the same to the left of x = 0; closed to the eye of the normals.
-        let tent = |x: f64| {
+        // Octahedra: the integrals of their normals are zero, whichever way they face.
+        let octahedron = |x: f64| {
             let ring = [[x - 1.0, 0.0, 0.0], [x, -1.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]];
             (0..8).map(move |i| {
                 let (p, q) = (ring[i % 4], ring[(i + 1) % 4]);
@@ -165,10 +168,14 @@ mod tests {
         };
         let turned = |t: [[f64; 3]; 3]| [t[1], t[0], t[2]];
         let mirror = Plane { normal: Vector::x(), offset: 0.0 }.reflection();
-        let pins = WholeFaces::of(&one_face(tent(5.0).collect(), tent(-5.0).collect()), 1e-3);
-        assert!(pins.maps(&mirror, PlacedFaceId(0), false));
-        let hole = WholeFaces::of(&one_face(tent(5.0).collect(), tent(-5.0).map(turned).collect()), 1e-3);
-        assert!(!hole.maps(&mirror, PlacedFaceId(0), false) && hole.maps(&mirror, PlacedFaceId(0), true));
+        let pin = || octahedron(5.0).collect();
+        let maps = |left, both| {
+            let faces = WholeFaces::of(&one_face(pin(), left), 1e-3, both);
+            faces.maps(&mirror, PlacedFaceId(0))
+        };
+        assert!(maps(octahedron(-5.0).collect(), false));
+        assert!(!maps(octahedron(-5.0).map(turned).collect(), false));
+        assert!(maps(octahedron(-5.0).map(turned).collect(), true));
     }
 
     #[test]
@@ -183,10 +190,10 @@ mod tests {
         for (image, both, maps) in
             [(left, false, true), (inside_out, false, false), (inside_out, true, true), (other, true, false)]
         {
-            let faces = WholeFaces::of(&mesh(&[right, image]), 1e-3);
-            assert_eq!(faces.maps(&mirror, PlacedFaceId(0), both), maps);
-            assert_eq!(faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(1), both), maps);
-            assert!(!faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(0), both));
+            let faces = WholeFaces::of(&mesh(&[right, image]), 1e-3, both);
+            assert_eq!(faces.maps(&mirror, PlacedFaceId(0)), maps);
+            assert_eq!(faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(1)), maps);
+            assert!(!faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(0)));
         }
     }
 }
