@@ -83,7 +83,10 @@ fn conic(placement: &Placement, x: [f64; 3], y: [f64; 3]) -> [Vector; 3] {
 impl Curve {
     /// The point at `t`.
     pub fn point(&self, t: f64) -> Point {
-        Point::from(self.derivatives(t)[0])
+        match self {
+            Self::Nurbs(nurbs) => nurbs.point(t),
+            _ => Point::from(self.derivatives(t)[0]),
+        }
     }
 
     /// Point (as a vector), first and second derivative at `t`. Bounded curves clamp `t` to their domain.
@@ -127,6 +130,7 @@ impl Curve {
             Self::Circle { .. } | Self::Ellipse { .. } => Some(TAU),
             Self::Line { .. } | Self::Parabola { .. } | Self::Hyperbola { .. } => None,
             Self::Offset { basis, .. } => basis.period(),
+            Self::Nurbs(nurbs) if nurbs.is_plainly_open() => None,
             _ => {
                 let [a, b] = self.domain();
                 let (p, q, middle) = (self.point(a), self.point(b), self.point(0.5 * (a + b)));

@@ -150,6 +150,19 @@ impl NurbsCurve {
         for_degree!(self.degree, 2, self.derivatives_below(t))
     }
 
+    /// The point alone, as [`Self::derivatives`] has it.
+    pub fn point(&self, t: f64) -> Point {
+        let [p, _, _] = for_degree!(self.degree, 0, self.derivatives_below(t));
+        Point::from(p)
+    }
+
+    /// Whether the ends of the domain are too far apart, beside the control points, to be one point.
+    pub(super) fn is_plainly_open(&self) -> bool {
+        let [p, q] = self.domain().map(|t| self.point(t));
+        let reach = self.points.iter().map(|c| (c - p).norm_squared()).fold(0.0, f64::max);
+        (q - p).norm_squared() > 1e-9 * reach
+    }
+
     /// For degrees below `N`.
     fn derivatives_below<const N: usize, const ORDER: usize>(&self, t: f64) -> [Vector; 3] {
         let basis = Basis::<N>::at::<ORDER>(&self.knots, self.degree, self.points.len(), t);
@@ -158,7 +171,7 @@ impl NurbsCurve {
             let i = basis.first + j;
             let w = self.weights.get(i).copied().unwrap_or(1.0);
             let weighted = Weighted(self.points[i].coords * w, w);
-            for (sum, values) in sums.iter_mut().zip(&basis.values) {
+            for (sum, values) in sums.iter_mut().zip(&basis.values).take(ORDER + 1) {
                 sum.add(values[j], &weighted);
             }
         }
@@ -193,6 +206,11 @@ impl NurbsSurface {
         for_degree!(self.degree_u.max(self.degree_v), 1, self.jet_below(u, v))
     }
 
+    /// The point alone, as [`Self::jet`] has it.
+    pub(super) fn point(&self, u: f64, v: f64) -> Point {
+        for_degree!(self.degree_u.max(self.degree_v), 0, self.jet_below(u, v)).point
+    }
+
     /// For degrees below `N`.
     fn jet_below<const N: usize, const ORDER: usize>(&self, u: f64, v: f64) -> Jet {
         let bu = Basis::<N>::at::<ORDER>(&self.knots_u, self.degree_u, self.rows(), u);
@@ -203,8 +221,10 @@ impl NurbsSurface {
             let row = self.row_sums::<N, ORDER>(&bv, bu.first + i);
             let [n, d, dd] = [bu.values[0][i], bu.values[1][i], bu.values[2][i]];
             a[0].add(n, &row[0]);
-            a[1].add(d, &row[0]);
-            a[3].add(n, &row[1]);
+            if ORDER > 0 {
+                a[1].add(d, &row[0]);
+                a[3].add(n, &row[1]);
+            }
             if ORDER > 1 {
                 a[2].add(dd, &row[0]);
                 a[4].add(d, &row[1]);

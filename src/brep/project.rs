@@ -43,10 +43,11 @@ impl Range {
 
 /// The parameter of the point of `curve` nearest to `p`.
 pub(super) fn closest_parameter(curve: &Curve, p: &Point, hint: Option<f64>) -> f64 {
-    closest_by(curve, hint, |t| {
+    let error = |t| {
         let [q, d, dd] = curve.derivatives(t);
         [q - p.coords, d, dd]
-    })
+    };
+    closest_by(curve, hint, error, |t| curve.point(t) - p)
 }
 
 /// The parameters of the point of `surface` nearest to `p`, for surfaces without a closed form; `periods` are its own.
@@ -197,7 +198,7 @@ fn project_extrusion(profile: &Curve, direction: &Vector, p: &Point, hint: Optio
         let [q, d, dd] = profile.derivatives(t);
         [flat(q) - target, flat(d), flat(dd)]
     };
-    let u = closest_by(profile, hint.map(|h| h[0]), error);
+    let u = closest_by(profile, hint.map(|h| h[0]), error, |t| flat(profile.point(t).coords) - target);
     let v = (p.coords - profile.derivatives(u)[0]).dot(&axis) / direction.norm();
     Some([u, v])
 }
@@ -224,7 +225,7 @@ pub(super) fn project_revolution(
         let rdd = (d.x * d.x + d.y * d.y + c.x * dd.x + c.y * dd.y - rd * rd) / r;
         [Vector::new(r - rho, 0.0, c.z - q.z), Vector::new(rd, 0.0, d.z), Vector::new(rdd, 0.0, dd.z)]
     };
-    let v = closest_by(profile, hint.map(|h| h[1]), error);
+    let v = closest_by(profile, hint.map(|h| h[1]), error, |t| error(t)[0]);
     let at = local(&(profile.derivatives(v)[0] - axis.origin.coords));
     Some([q.y.atan2(q.x) - at.y.atan2(at.x), v])
 }
@@ -266,12 +267,17 @@ fn project_turned_circle(profile: &Curve, axis: &Placement, out: &Vector, q: &Ve
     [q.y.atan2(q.x) - beginning + turn, v]
 }
 
-/// The parameter of a curve that makes the vector `error(t)[0]` shortest; `error` gives two derivatives as well.
+/// The parameter of a curve that makes the vector `off(t)` shortest; `error` gives two derivatives as well.
 /// A step that makes it longer is halved; where the second-order term would turn the step round it is left out.
-fn closest_by(curve: &Curve, hint: Option<f64>, error: impl Fn(f64) -> [Vector; 3]) -> f64 {
+fn closest_by(
+    curve: &Curve,
+    hint: Option<f64>,
+    error: impl Fn(f64) -> [Vector; 3],
+    off: impl Fn(f64) -> Vector,
+) -> f64 {
     let [a, b] = curve.domain();
     let range = Range::new(a, b, curve.period());
-    let size = |t: f64| error(t)[0].norm_squared();
+    let size = |t: f64| off(t).norm_squared();
     let mut t = match hint {
         Some(hint) => range.hold(hint),
         None if (b - a).is_finite() => best_by(curve, &size),

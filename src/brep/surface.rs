@@ -139,7 +139,10 @@ pub enum SurfaceKind {
 impl Surface {
     /// The point at (u, v).
     pub fn point(&self, u: f64, v: f64) -> Point {
-        self.tangents(u, v).point
+        match self {
+            Self::Nurbs(nurbs) => nurbs.point(u, v),
+            _ => self.jet(u, v).point,
+        }
     }
 
     /// Point and first derivatives at (u, v); whether the second ones are there, is left open.
@@ -353,7 +356,7 @@ fn offset(basis: &Surface, distance: f64, u: f64, v: f64) -> Jet {
 fn nurbs_periods(nurbs: &NurbsSurface) -> [Option<f64>; 2] {
     let [u0, u1, v0, v1] = nurbs.domain();
     let size = crate::geometry::Aabb::of(&nurbs.points).diagonal();
-    let at = |[u, v]: [f64; 2]| nurbs.tangents(u, v).point;
+    let at = |[u, v]: [f64; 2]| nurbs.point(u, v);
     let same = |a: [f64; 2], b: [f64; 2]| (at(a) - at(b)).norm() <= 1e-6 * size;
     let shares = [0.0, 0.31, 0.5, 0.77, 1.0];
     let closed_u = shares.iter().all(|s| same([u0, v0 + s * (v1 - v0)], [u1, v0 + s * (v1 - v0)]));

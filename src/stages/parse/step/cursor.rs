@@ -118,6 +118,10 @@ impl<'a, 'r> Cursor<'a, 'r> {
 
     /// To the comma or closing parenthesis that ends the value at the cursor, or just behind a closed list.
     fn skip_balanced(&mut self) {
+        if self.bytes[self.at..].starts_with(b"'',") {
+            self.at += 2;
+            return;
+        }
         let mut depth = 0_u32;
         while let Some(b) = self.bytes.get(self.at) {
             match b {

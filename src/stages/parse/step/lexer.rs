@@ -15,7 +15,8 @@ const LONGEST_KEYWORD: usize = 80;
 /// Offsets are kept in 56 bits, beside the 8 bits of the kind.
 const LONGEST_FILE: usize = 1 << 56;
 
-/// An instance: its number, where the text after `=` starts, and its kind.
+/// An instance: its number, where the text behind its keyword (of a complex one: behind its parenthesis) starts, and
+/// its kind.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub id: u64,
@@ -67,9 +68,11 @@ pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
         if at >= bytes.len() || ended {
             break;
         }
-        match statement_end(bytes, at) {
+        let entry = entry(bytes, at);
+        match statement_end(bytes, entry.map_or(at, |entry| behind_name(bytes, entry.start()))) {
             End::Semicolon(end) => {
-                ended = add_statement(bytes, at, &mut table);
+                table.entries.extend(entry);
+                ended = bytes[at] != b'#' && is_end(bytes, at, &mut table);
                 at = end + 1;
             }
             End::BrokenString(resume) => {
@@ -94,14 +97,20 @@ pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
     Ok(table)
 }
 
-/// Takes note of the statement at `at`; true for the end marker.
-fn add_statement(bytes: &[u8], at: usize, table: &mut Table) -> bool {
-    if bytes[at] == b'#' {
-        if let Some((id, start)) = instance(bytes, at) {
-            table.entries.push(Entry::new(id, start, kind_at(bytes, start).0));
-        }
-        return false;
-    }
+/// The instance at `at`, if there is one.
+fn entry(bytes: &[u8], at: usize) -> Option<Entry> {
+    let (id, start) = if bytes[at] == b'#' { instance(bytes, at)? } else { return None };
+    let (kind, behind) = kind_at(bytes, start);
+    Some(Entry::new(id, behind, kind))
+}
+
+/// The place behind the name that most instances do not have.
+fn behind_name(bytes: &[u8], start: usize) -> usize {
+    if bytes[start..].starts_with(b"('',") { start + 4 } else { start }
+}
+
+/// Takes note of the statement at `at`, which is no instance; true for the end marker.
+fn is_end(bytes: &[u8], at: usize, table: &mut Table) -> bool {
     let mut buffer = [0; LONGEST_KEYWORD];
     let (length, after) = keyword(bytes, at, &mut buffer);
     match &buffer[..length] {
@@ -155,14 +164,6 @@ pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
     let mut buffer = [0; LONGEST_KEYWORD];
     let (length, after) = keyword(bytes, at, &mut buffer);
     (Kind::of(&buffer[..length]), after)
-}
-
-/// The place behind the keyword of the record at `at`, whatever it is.
-pub(super) fn behind_keyword(bytes: &[u8], at: usize) -> usize {
-    match bytes.get(at..).and_then(|rest| memchr3(b'(', b'/', b';', rest)) {
-        Some(length) if length > 0 && bytes[at + length] == b'(' => at + length,
-        _ => kind_at(bytes, at).1,
-    }
 }
 
 /// Copies the keyword at `at` in upper case without the spaces and line breaks inside; its length, and the place behind.
@@ -227,6 +228,7 @@ fn statement_end(bytes: &[u8], mut at: usize) -> End {
         let found = at + n;
         match bytes[found] {
             b';' => return End::Semicolon(found),
+            b'\'' if bytes.get(found + 1) == Some(&b'\'') => at = found + 2,
             b'\'' => {
                 // A doubled quote inside a string ends it and at once begins it anew: no special case.
                 let end = memchr(b'\'', &bytes[found + 1..]).map_or(bytes.len(), |n| found + 1 + n);

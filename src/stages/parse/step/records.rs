@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::cursor::Cursor;
 use super::keyword::Kind;
-use super::lexer::{Entry, Table, behind_keyword, kind_at, skip_space};
+use super::lexer::{Entry, Table, kind_at, skip_space};
 use crate::stages::parse::fault::{Fault, Read};
 
 /// The bytes of a file with the table of its instances.
@@ -53,7 +53,7 @@ impl<'a> File<'a> {
     /// The record of a table entry.
     pub fn record_of(&self, entry: Entry) -> Record<'a> {
         let (kind, start) = (entry.kind(), entry.start());
-        let parts = if kind == Kind::Complex { self.parts(start + 1) } else { Vec::new() };
+        let parts = if kind == Kind::Complex { self.parts(start) } else { Vec::new() };
         Record { id: entry.id, kind, file: *self, start, parts }
     }
 }
@@ -64,6 +64,7 @@ pub(super) struct Record<'a> {
     pub id: u64,
     pub kind: Kind,
     file: File<'a>,
+    /// Behind the keyword.
     start: usize,
     parts: Vec<(Kind, usize)>,
 }
@@ -86,9 +87,7 @@ impl<'a> Record<'a> {
         if self.kind == Kind::Complex {
             Cursor::over_parts(self.file, self.id, &self.parts, inheritance)
         } else {
-            let place = behind_keyword(self.file.bytes, self.start);
-            self.file.table.effort.spend(place - self.start);
-            Cursor::at(self.file, self.id, place)
+            Cursor::at(self.file, self.id, self.start)
         }
     }
 
