@@ -191,7 +191,7 @@ mod tests {
         let (short, long) = (rings(true), rings(false));
         assert!((area(&chart, &short).unwrap() / quarter - 1.0).abs() < 1e-4);
         assert!((area(&chart, &long).unwrap() / rest - 1.0).abs() < 1e-4);
-        chart.settle(&short, &[chart.point([0.0, PI])]);
+        chart.settle(&short, vec![chart.point([0.0, PI])]);
         assert!(area(&chart, &short).is_none(), "the seam lies on the other side");
         assert!(area(&chart, &long).is_some());
     }

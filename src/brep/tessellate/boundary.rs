@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::chart::{Chart, Uv};
 use super::edges::EdgeLines;
 use crate::brep::{EdgeId, EdgeUse, Face};
-use crate::geometry::{Point, Point2, polygon};
+use crate::geometry::Point;
 
 /// Points nearer than this share of what is too far are taken to be where they should be.
 const GOOD: f64 = 0.02;
@@ -16,6 +16,9 @@ const FAR_APART: f64 = 0.05;
 const MOST_SEAMS: usize = 256;
 /// Points of the border of one face at most: edges may be used again and again.
 const MOST_POINTS: usize = 1_000_000;
+
+/// Up to so many edges a seam is found soonest by comparing each with each.
+const SHORT: usize = 16;
 
 /// A closed path in parameter space, unwrapped: it may leave the domain of a periodic surface.
 #[derive(Clone, Debug, Default)]
@@ -32,8 +35,8 @@ pub(super) struct Path {
 impl Path {
     /// Signed area in parameter space (of the polygon, for paths that do not go round).
     pub fn signed_area(&self) -> f64 {
-        let polygon: Vec<Point2> = self.uv.iter().map(|&uv| Point2::from(uv)).collect();
-        polygon::signed_area(&polygon)
+        let before = self.uv.last().into_iter().chain(&self.uv);
+        0.5 * before.zip(&self.uv).map(|(p, q)| p[0] * q[1] - q[0] * p[1]).sum::<f64>()
     }
 
     /// Goes round the surface?
@@ -88,18 +91,18 @@ impl Border {
         if uses.map(|u| lines.line(u.edge).0.len()).sum::<usize>() > MOST_POINTS {
             return None;
         }
-        let (mut chains, mut seams) = (Vec::new(), Vec::new());
+        let (mut chains, mut seams, mut loops) = (Vec::new(), Vec::new(), Vec::with_capacity(face.loops.len()));
         for face_loop in &face.loops {
+            if first_pair(&face_loop.uses).is_none() && !face_loop.uses.iter().any(|u| degenerate[u.edge.index()]) {
+                loops.push(polyline(&face_loop.uses, lines));
+                continue;
+            }
             let uses = face_loop.uses.iter().copied().filter(|u| !degenerate[u.edge.index()]).collect();
             split_at_seams(uses, &mut chains, &mut seams);
+            loops.extend(chains.drain(..).map(|chain| polyline(&chain, lines)));
         }
-        let loops = chains.iter().map(|chain| polyline(chain, lines)).filter(|p| p[0].len() > 1).collect();
+        loops.retain(|line| line[0].len() > 1);
         Some(Self { loops, seams: seams.into_iter().map(|edge| half_way(edge, lines)).collect() })
-    }
-
-    /// All points of the loops.
-    pub fn points(&self) -> Vec<Point> {
-        self.loops.iter().flat_map(|l| l[0].iter().copied()).collect()
     }
 }
 
@@ -122,6 +125,13 @@ fn split_at_seams(uses: Vec<EdgeUse>, out: &mut Vec<Vec<EdgeUse>>, seams: &mut V
 
 /// The places of the first use of an edge that has an opposite one, and of that.
 fn first_pair(chain: &[EdgeUse]) -> Option<(usize, usize)> {
+    if chain.len() <= SHORT {
+        let opposite = |i: usize| {
+            let twin = |u: &EdgeUse| u.edge == chain[i].edge && u.forward != chain[i].forward;
+            chain[i + 1..].iter().position(twin).map(|n| (i, i + 1 + n))
+        };
+        return (0..chain.len()).find_map(opposite);
+    }
     let mut first: FxHashMap<(EdgeId, bool), usize> = FxHashMap::default();
     let pairs = chain.iter().enumerate().filter_map(|(j, u)| {
         first.entry((u.edge, u.forward)).or_insert(j);
@@ -137,7 +147,8 @@ fn half_way(edge: EdgeId, lines: &EdgeLines) -> Point {
 }
 
 fn polyline(chain: &[EdgeUse], lines: &EdgeLines) -> [Vec<Point>; 2] {
-    let (mut points, mut middles) = (Vec::new(), Vec::new());
+    let count = chain.iter().map(|u| lines.line(u.edge).0.len() - 1).sum();
+    let (mut points, mut middles) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for edge_use in chain {
         let (p, m) = lines.line(edge_use.edge);
         let n = p.len() - 1;
@@ -226,7 +237,9 @@ impl Tracer<'_> {
     }
 
     fn map(&mut self, p: &Point) -> Result<(Uv, Option<usize>), Unmapped> {
-        self.chart.cancel.check().map_err(|_| Unmapped { distance: f64::NAN })?;
+        if self.chart.is_cancelled() {
+            return Err(Unmapped { distance: f64::NAN });
+        }
         let (distance, uv) = self.chart.nearest(p, self.hint, self.good).ok_or(Unmapped { distance: f64::INFINITY })?;
         if distance.is_nan() || distance > self.far {
             return Err(Unmapped { distance });

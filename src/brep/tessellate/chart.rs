@@ -41,12 +41,12 @@ pub(super) struct Chart<'a> {
     /// Which part of a torus that cuts itself.
     part: Option<Part>,
     /// Stops the long loops over one face; the caller asks again, whatever they found.
-    pub cancel: Cancel,
+    pub cancel: Option<&'a Cancel>,
 }
 
 impl<'a> Chart<'a> {
-    /// For the surface of a face; `border`: points of its edges, which the poles of a sphere are kept away from.
-    pub fn new(surface: &'a Surface, same_sense: bool, border: &[Point], size: f64) -> Self {
+    /// For the surface of a face; `border`: its loops with their middles, which the poles of a sphere are kept away from.
+    pub fn new(surface: &'a Surface, same_sense: bool, border: &[[Vec<Point>; 2]], size: f64) -> Self {
         let surface = match surface {
             Surface::Rectangular { basis, .. } => Cow::Borrowed(&**basis),
             other => Cow::Borrowed(other),
@@ -66,11 +66,16 @@ impl<'a> Chart<'a> {
         let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
             && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
         let (flipped, poles, samples, inner) = (!same_sense, [false; 4], OnceCell::new(), Vec::new());
-        let cancel = Cancel::new();
-        let mut chart = Self { surface, domain, periods, flipped, wraps, poles, samples, inner, part: None, cancel };
+        let (part, cancel) = (None, None);
+        let mut chart = Self { surface, domain, periods, flipped, wraps, poles, samples, inner, part, cancel };
         chart.poles = chart.find_poles(size);
         chart.spindle(border);
         chart
+    }
+
+    /// Whether the work on the face should stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(Cancel::is_cancelled)
     }
 
     /// Point and first derivatives, also outside the domain of a periodic surface.
@@ -80,7 +85,8 @@ impl<'a> Chart<'a> {
     }
 
     pub fn point(&self, uv: Uv) -> Point {
-        self.tangents(uv).point
+        let [u, v] = if self.wraps { self.wrapped(uv) } else { uv };
+        self.surface.point(u, v)
     }
 
     fn wrapped(&self, mut uv: Uv) -> Uv {
@@ -126,7 +132,7 @@ impl<'a> Chart<'a> {
     }
 
     /// Bounds a torus that cuts itself to the part where the border is: a surface with two poles.
-    fn spindle(&mut self, border: &[Point]) {
+    fn spindle(&mut self, border: &[[Vec<Point>; 2]]) {
         self.part = Part::of(&self.surface, border);
         if let Some(part) = &self.part {
             [self.domain[2], self.domain[3]] = part.range();
@@ -136,8 +142,8 @@ impl<'a> Chart<'a> {
     }
 
     /// Notes points of the face's inside and bounds a cone at its apex, on the side where the paths are.
-    pub fn settle(&mut self, paths: &[Path], inner: &[Point]) {
-        self.inner = inner.to_vec();
+    pub fn settle(&mut self, paths: &[Path], inner: Vec<Point>) {
+        self.inner = inner;
         let Surface::Cone { radius, half_angle, .. } = &*self.surface else { return };
         let apex = -radius / half_angle.tan();
         let heights = || paths.iter().flat_map(|p| &p.uv).map(|uv| uv[1]);
@@ -203,7 +209,7 @@ impl<'a> Chart<'a> {
             return Some(((self.point(uv) - p).norm(), uv));
         }
         let project = |hint| self.surface.project_within(self.periods, p, hint);
-        let from = |hint: Option<Uv>| project(hint).map(|uv| ((self.point(uv) - p).norm(), uv));
+        let from = |hint: Option<Uv>| project(hint).map(|uv| (self.distance(p, uv), uv));
         if !self.is_sampled() {
             let near = from(hint);
             return match (near, hint) {
@@ -222,6 +228,21 @@ impl<'a> Chart<'a> {
             }
         }
         best
+    }
+
+    /// How far `p` is from the point of the surface at `uv`, which is the nearest one.
+    fn distance(&self, p: &Point, uv: Uv) -> f64 {
+        let (placement, tube, radius) = match &*self.surface {
+            Surface::Cylinder { placement, radius } => {
+                let q = placement.local(p);
+                return (q.x.hypot(q.y) - radius).abs();
+            }
+            Surface::Sphere { placement, radius } => (placement, 0.0, radius),
+            Surface::Torus { placement, major, minor } => (placement, *major, minor),
+            _ => return (self.point(uv) - p).norm(),
+        };
+        let q = placement.local(p);
+        ((q.x.hypot(q.y) - tube).hypot(q.z) - radius).abs()
     }
 
     /// How long a unit step of u and of v is around the middle of the rectangle, mm.
@@ -290,7 +311,7 @@ mod tests {
         let surface = Surface::Cone { placement: axes(), radius: 1.0, half_angle: FRAC_PI_4 };
         for (v, side) in [(2.0, 2), (-3.0, 3)] {
             let mut chart = Chart::new(&surface, true, &[], 1.0);
-            chart.settle(&[Path { uv: vec![[0.0, v]], ..Path::default() }], &[]);
+            chart.settle(&[Path { uv: vec![[0.0, v]], ..Path::default() }], Vec::new());
             assert!(chart.poles[side] && (chart.domain[side] + 1.0).abs() < 1e-12);
             assert!(!chart.poles[5 - side]);
         }

@@ -233,7 +233,7 @@ pub(super) fn fill(
     let origin = patch.uv.first().copied()?;
     let scaled: Vec<Uv> =
         patch.uv.iter().map(|p| [(p[0] - origin[0]) * scale[0], (p[1] - origin[1]) * scale[1]]).collect();
-    let cut = delaunay(&scaled, segments, &chart.cancel)?;
+    let cut = delaunay(&scaled, segments, &|| chart.is_cancelled())?;
     for p in &cut.added {
         patch.add(chart, [origin[0] + p[0] / scale[0], origin[1] + p[1] / scale[1]]);
     }
@@ -246,7 +246,7 @@ pub(super) fn fill(
             let corners = cut.triangles[t as usize];
             let [a, b, c] = corners.map(|i| patch.uv[i as usize]);
             doubled_area(&patch.uv, &corners) > least
-                && !chart.cancel.is_cancelled()
+                && !chart.is_cancelled()
                 && inside(&[(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0])
         })
         .collect();

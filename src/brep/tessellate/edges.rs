@@ -100,17 +100,17 @@ impl EdgeLines {
 
     fn follow(&mut self, curve: &Curve, span: [f64; 2], fineness: &Fineness, least: usize) {
         let period = curve.period();
-        let at = |t: f64| curve.derivatives(curve.wrap(t, period));
+        let at = |t: f64| curve.point(curve.wrap(t, period));
         let parameters = match curve {
             Curve::Circle { radius, .. } => conic_parameters(span, *radius, fineness, least),
             Curve::Ellipse { semi_x, semi_y, .. } => conic_parameters(span, semi_x.max(*semi_y), fineness, least),
-            _ => adaptive_parameters(curve, &at, span, period, fineness, least),
+            _ => adaptive_parameters(curve, span, period, fineness, least),
         };
         for pair in parameters.windows(2) {
-            self.points.push(Point::from(at(pair[0])[0]));
-            self.middles.push(Point::from(at(0.5 * (pair[0] + pair[1]))[0]));
+            self.points.push(at(pair[0]));
+            self.middles.push(at(0.5 * (pair[0] + pair[1])));
         }
-        let last = Point::from(at(span[1])[0]);
+        let last = at(span[1]);
         self.points.push(last);
         self.middles.push(last);
     }
@@ -149,19 +149,20 @@ fn conic_parameters(span: [f64; 2], radius: f64, fineness: &Fineness, least: usi
 /// Halves the pieces between the curve's breaks until chord and tangents are near enough.
 fn adaptive_parameters(
     curve: &Curve,
-    at: &impl Fn(f64) -> [Vector; 3],
     span: [f64; 2],
     period: Option<f64>,
     fineness: &Fineness,
     least: usize,
 ) -> Vec<f64> {
+    let piece = Piece { curve, period, fineness };
     let stops = stops(curve, span, period);
     let pieces = (least.max(2) / (stops.len() - 1).max(1)).max(1);
     let mut parameters = vec![span[0]];
     for pair in stops.windows(2) {
         for i in 0..pieces {
             let share = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / pieces as f64;
-            halve(at, [share(i), share(i + 1)], fineness, MAX_DEPTH, &mut parameters);
+            let ends = [share(i), share(i + 1)];
+            piece.halve(ends, ends.map(|t| piece.start(t)), MAX_DEPTH, &mut parameters);
         }
         if parameters.len() > MAX_POINTS {
             break;
@@ -188,20 +189,38 @@ fn stops(curve: &Curve, [from, to]: [f64; 2], period: Option<f64>) -> Vec<f64> {
     stops
 }
 
-/// Adds the end of the piece, after what is needed before it.
-fn halve(at: &impl Fn(f64) -> [Vector; 3], [a, b]: [f64; 2], fineness: &Fineness, depth: u32, out: &mut Vec<f64>) {
-    let m = 0.5 * (a + b);
-    let ([p, d, _], [r, e, _]) = (at(a), at(b));
-    let direction = (r - p).try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
-    // The quarters as well: an S crosses its chord in the middle.
-    let off = [0.25, 0.5, 0.75].map(|s| at(a + s * (b - a))[0] - p).map(|q| (q - direction * direction.dot(&q)).norm());
-    let off = off.into_iter().fold(0.0, f64::max);
-    let bent = off > 0.05 * fineness.deflection && d.cross(&e).norm().atan2(d.dot(&e)) > fineness.angle;
-    if depth > 0 && (off > fineness.deflection || bent) {
-        halve(at, [a, m], fineness, depth - 1, out);
-        halve(at, [m, b], fineness, depth - 1, out);
-    } else {
-        out.push(b);
+/// What a piece of a curve is cut by.
+struct Piece<'a> {
+    curve: &'a Curve,
+    period: Option<f64>,
+    fineness: &'a Fineness,
+}
+
+impl Piece<'_> {
+    /// Point and tangent.
+    fn start(&self, t: f64) -> [Vector; 2] {
+        let [p, d, _] = self.curve.derivatives(self.curve.wrap(t, self.period));
+        [p, d]
+    }
+
+    /// Adds the end of the piece from `a` to `b`, whose points and tangents are given, after what is needed before it.
+    fn halve(&self, [a, b]: [f64; 2], [[p, d], [r, e]]: [[Vector; 2]; 2], depth: u32, out: &mut Vec<f64>) {
+        let m = 0.5 * (a + b);
+        let direction = (r - p).try_normalize(f64::MIN_POSITIVE).unwrap_or_default();
+        let at = |t: f64| self.curve.point(self.curve.wrap(t, self.period)).coords;
+        // The quarters as well: an S crosses its chord in the middle.
+        let off =
+            [0.25, 0.5, 0.75].map(|s| at(a + s * (b - a)) - p).map(|q| (q - direction * direction.dot(&q)).norm());
+        let off = off.into_iter().fold(0.0, f64::max);
+        let Fineness { deflection, angle } = *self.fineness;
+        let bent = off > 0.05 * deflection && d.cross(&e).norm().atan2(d.dot(&e)) > angle;
+        if depth > 0 && (off > deflection || bent) {
+            let middle = self.start(m);
+            self.halve([a, m], [[p, d], middle], depth - 1, out);
+            self.halve([m, b], [middle, [r, e]], depth - 1, out);
+        } else {
+            out.push(b);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::boundary::{self, Border, Path};
 use super::chart::{Chart, Uv};
-use super::domain;
+use super::domain::{self, Patch};
 use super::edges::{EdgeLines, Fineness};
 use super::fallback::planar_fill;
 use super::integrate::{Integrals, integrate, integrate_triangles};
@@ -47,15 +47,10 @@ pub(super) struct FaceMesh {
     /// Counter-clockwise seen from the face normal's side.
     pub triangles: Vec<[u32; 3]>,
     pub integrals: Integrals,
+    /// Those of the triangles as they are.
+    pub plain: Integrals,
     pub reference: Point,
     pub warning: Option<String>,
-}
-
-impl FaceMesh {
-    /// The area of the triangles.
-    pub fn plain_area(&self) -> f64 {
-        integrate_triangles(&self.points, &self.triangles, &self.reference).area
-    }
 }
 
 /// Tessellates a face, or says why it cannot be.
@@ -64,26 +59,30 @@ pub(super) fn mesh(context: &Context, face: &Face, reference: &Point) -> Result<
         FaceGeometry::Trimmed { surface, same_sense } => (surface, *same_sense),
         FaceGeometry::Faceted(facets) => return faceted(facets, reference),
     };
-    let border = Border::of(face, &context.lines, &context.degenerate).ok_or("a border of too many points")?;
-    let mut chart = Chart::new(surface, same_sense, &border.points(), context.size);
-    chart.cancel = context.cancel.clone();
-    match trimmed(context, surface, &mut chart, &border, reference) {
+    let edges = border(context, face)?;
+    let mut chart = Chart::new(surface, same_sense, &edges.loops, context.size);
+    chart.cancel = Some(context.cancel);
+    match trimmed(context, surface, &mut chart, edges, reference) {
         Ok(mesh) => Ok(mesh),
-        Err(why) => filled(context, face, border.loops, reference, &why),
+        Err(why) => filled(context, face, border(context, face)?.loops, reference, &why),
     }
+}
+
+fn border(context: &Context, face: &Face) -> Result<Border, String> {
+    Ok(Border::of(face, &context.lines, &context.degenerate).ok_or("a border of too many points")?)
 }
 
 fn trimmed(
     context: &Context,
     surface: &Surface,
     chart: &mut Chart,
-    border: &Border,
+    border: Border,
     reference: &Point,
 ) -> Result<FaceMesh, String> {
     let far = FAR * context.size;
-    let mut paths = boundary::paths(chart, border.loops.clone(), context.size, far)
+    let mut paths = boundary::paths(chart, border.loops, context.size, far)
         .map_err(|e| format!("an edge is {:.3} mm off the surface", e.distance))?;
-    chart.settle(&paths, &border.seams);
+    chart.settle(&paths, border.seams);
     if paths.is_empty() && !chart.is_closed() {
         paths.push(rim(chart, surface).ok_or("the face has no bounds and its surface is infinite")?);
     }
@@ -122,14 +121,15 @@ fn patch(
         return Err("the area is not a positive number".to_owned());
     }
     let turn = |t: [u32; 3]| if chart.flipped { [t[0], t[2], t[1]] } else { t };
-    let triangles = patch.triangles.into_iter().map(turn).collect();
-    Ok(FaceMesh { points: patch.points, triangles, integrals, reference: *reference, warning: None })
+    let triangles: Vec<_> = patch.triangles.into_iter().map(turn).collect();
+    let plain = integrate_triangles(&patch.points, &triangles, reference);
+    Ok(FaceMesh { points: patch.points, triangles, integrals, plain, reference: *reference, warning: None })
 }
 
 /// How far the triangles are from the surface they stand for, 1 being the most that is taken: their area, and the
 /// volume between them and the surface, which is their mean distance times the area.
 fn error(mesh: &FaceMesh, context: &Context) -> f64 {
-    let (plain, exact) = (integrate_triangles(&mesh.points, &mesh.triangles, &mesh.reference), &mesh.integrals);
+    let (plain, exact) = (&mesh.plain, &mesh.integrals);
     let unseen = UNSEEN * context.size * context.size;
     let area_off = AREA_OFF * context.coarser.powi(3);
     let by_area = (plain.area - exact.area).abs() / (area_off * exact.area).max(unseen);
@@ -167,7 +167,8 @@ fn filled(
     let patch = planar_fill(borders, context).ok_or_else(|| why.to_owned())?;
     let integrals = integrate_triangles(&patch.points, &patch.triangles, reference);
     let warning = Some(format!("face #{}: {why}; its border was filled with a plane", face.entity));
-    Ok(FaceMesh { points: patch.points, triangles: patch.triangles, integrals, reference: *reference, warning })
+    let Patch { points, triangles, .. } = patch;
+    Ok(FaceMesh { points, triangles, integrals, plain: integrals, reference: *reference, warning })
 }
 
 fn faceted(facets: &Facets, reference: &Point) -> Result<FaceMesh, String> {
@@ -178,5 +179,6 @@ fn faceted(facets: &Facets, reference: &Point) -> Result<FaceMesh, String> {
     if !(integrals.area > 0.0 && integrals.area.is_finite()) {
         return Err("the triangles have no area".to_owned());
     }
-    Ok(FaceMesh { points: facets.points.clone(), triangles, integrals, reference: *reference, warning: None })
+    let points = facets.points.clone();
+    Ok(FaceMesh { points, triangles, integrals, plain: integrals, reference: *reference, warning: None })
 }

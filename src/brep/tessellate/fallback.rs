@@ -16,7 +16,7 @@ pub(super) fn planar_fill(borders: Vec<[Vec<Point>; 2]>, context: &Context) -> O
     let largest = borders.iter().max_by_key(|b| b[0].len())?;
     let surface = Surface::Plane(Placement { origin: mean(&largest[0]), x, y: z.cross(&x), z });
     let mut chart = Chart::new(&surface, true, &[], size);
-    chart.cancel = context.cancel.clone();
+    chart.cancel = Some(context.cancel);
     let mut paths: Vec<Path> = paths(&chart, borders, size, f64::INFINITY).ok()?;
     triangulate(&chart, &mut paths, &context.fineness, true)
 }

@@ -68,8 +68,9 @@ impl Default for Options {
     }
 }
 
-/// Models with fewer faces than this are not worth more than one thread.
-const PARALLEL_FACES: usize = 400;
+/// Models with fewer faces than this are not worth more than one thread: what is woken for some milliseconds costs as
+/// much as it does, and other models wait for the cores.
+const PARALLEL_FACES: usize = 2048;
 /// Where there would be too many triangles, chords are made this many times as long at most: hexagons for circles.
 const COARSEST: f64 = 3.0;
 /// Faces that are tessellated before their triangles are counted.

@@ -72,6 +72,12 @@ pub(super) fn place(
     cancel: &Cancel,
 ) -> Result<Placed, Cancelled> {
     let mut placed = Placed::default();
+    let sizes = |size: fn(&FaceMesh) -> usize| {
+        let of_body = |o: &Occurrence| model.faces_of(o.body).filter_map(|id| faces.get(id.index())?.as_ref().ok());
+        model.occurrences.iter().flat_map(of_body).map(size).sum::<usize>().min(max_triangles)
+    };
+    placed.mesh.points.reserve_exact(sizes(|face| face.points.len()));
+    placed.mesh.triangles.reserve_exact(sizes(|face| face.triangles.len()));
     for (index, occurrence) in model.occurrences.iter().enumerate() {
         cancel.check()?;
         for id in model.faces_of(occurrence.body) {
@@ -116,8 +122,10 @@ impl Place {
 
 /// Where each body lies, by points of its edges and the extent of surfaces without bounds.
 pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Place>> {
-    let place = |body: &crate::brep::Body| {
-        let mut points = Vec::new();
+    let chains: Vec<_> = (0..model.edges.len()).map(|e| chain(model, EdgeId(e as u32), spans[e])).collect();
+    let mut points = Vec::new();
+    let mut place = |body: &crate::brep::Body| {
+        points.clear();
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
         for face in faces.map(|f| &model.faces[f.index()]) {
             match &face.geometry {
@@ -127,14 +135,17 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
                 }
                 FaceGeometry::Trimmed { .. } => {
                     let edges = face.loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);
-                    edges.for_each(|e| add_edge(&mut points, model, e, spans[e.index()]));
+                    edges.for_each(|e| match &chains[e.index()] {
+                        Some(chain) => add_chain(&mut points, chain),
+                        None => add_chain(&mut points, &model.ends(e)),
+                    });
                 }
             }
         }
         points.retain(|(p, weight): &(Point, f64)| p.iter().chain([weight]).all(|c| c.is_finite()));
         Place::of(&points)
     };
-    model.bodies.iter().map(place).collect()
+    model.bodies.iter().map(&mut place).collect()
 }
 
 /// Adds points, each with the distance from the one before it as its weight: many on a short edge count little.
@@ -146,19 +157,17 @@ fn add_chain(points: &mut Vec<(Point, f64)>, chain: &[Point]) {
     }
 }
 
-fn add_edge(points: &mut Vec<(Point, f64)>, model: &Model, id: EdgeId, span: Option<[f64; 2]>) {
-    let [start, end] = model.ends(id);
-    let (Some(curve), Some([from, to])) = (model.edges[id.index()].curve.as_deref(), span) else {
-        return add_chain(points, &[start, end]);
-    };
+/// Points of an edge that has a curve.
+fn chain(model: &Model, id: EdgeId, span: Option<[f64; 2]>) -> Option<[Point; EDGE_SAMPLES + 1]> {
+    let ([start, end], [from, to]) = (model.ends(id), span?);
+    let curve = model.edges[id.index()].curve.as_deref()?;
     let period = curve.period();
     let at = |i: usize| from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
-    let chain: [Point; EDGE_SAMPLES + 1] = std::array::from_fn(|i| match i {
+    Some(std::array::from_fn(|i| match i {
         0 => start,
         EDGE_SAMPLES => end,
         _ => curve.point(curve.wrap(at(i), period)),
-    });
-    add_chain(points, &chain);
+    }))
 }
 
 /// The poles of a whole sphere or torus; a grid over the domain of others that have one.

@@ -46,7 +46,7 @@ pub(super) fn refine(
 fn coarse_edges(context: &Context, faces: &[Result<FaceMesh, String>]) -> FxHashSet<EdgeId> {
     let whole: f64 = faces.iter().flatten().map(|f| f.integrals.area).sum();
     let off = |mesh: &FaceMesh| {
-        let (plain, exact) = (mesh.plain_area(), mesh.integrals.area);
+        let (plain, exact) = (mesh.plain.area, mesh.integrals.area);
         (plain - exact).abs() > (AREA_OFF * exact).max(UNSEEN * whole)
     };
     let coarse = context.model.faces.iter().zip(faces).filter(|(_, m)| m.as_ref().is_ok_and(off));

@@ -4,11 +4,10 @@
 use earcut::Earcut;
 use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 
 use super::chart::Uv;
-use crate::cancel::Cancel;
 
 /// Crossings that are always split, and how many are split for each point: real borders cross themselves here and
 /// there, scribbles as often as there are pairs of segments.
@@ -20,6 +19,11 @@ const MOST_EARS: usize = 4000;
 /// How much the triangles' area may differ from the polygon's, as a share.
 const AREA_SLACK: f64 = 1e-6;
 
+thread_local! {
+    /// Room to cut ears in, kept from one polygon of the thread to the next.
+    static EARCUT: RefCell<Earcut<f64>> = RefCell::new(Earcut::new());
+}
+
 /// Triangles of a polygon with holes, all counter-clockwise; `rings`: where each ring starts, the outer one first,
 /// `area`: what they must add up to. `None` where the rings cut each other and the areas differ.
 pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32; 3]>> {
@@ -28,7 +32,7 @@ pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32
     }
     let holes: Vec<u32> = rings.iter().skip(1).map(|&r| r as u32).collect();
     let mut indices: Vec<u32> = Vec::with_capacity(3 * points.len());
-    Earcut::new().earcut(points.iter().copied(), &holes, &mut indices);
+    EARCUT.with_borrow_mut(|ears| ears.earcut(points.iter().copied(), &holes, &mut indices));
     let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
     let mut sum = 0.0;
     for t in &mut triangles {
@@ -106,7 +110,7 @@ pub(super) struct Cut {
 
 /// Constrained Delaunay triangulation; segments that cross are split. `None` for points that cannot be used, where
 /// segments cross far too often, and when cancelled.
-pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]], cancel: &Cancel) -> Option<Cut> {
+pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]], cancelled: &dyn Fn() -> bool) -> Option<Cut> {
     if points.iter().any(|p| !(p[0].abs() < 1e30 && p[1].abs() < 1e30)) {
         return None;
     }
@@ -117,7 +121,7 @@ pub(super) fn delaunay(points: &[Uv], segments: &[[u32; 2]], cancel: &Cancel) ->
     let next = Cell::new(points.len() as u32);
     let most = MOST_CROSSINGS.max(CROSSINGS_A_POINT * points.len());
     for [from, to] in conflicts {
-        if next.get() as usize - points.len() > most || cancel.is_cancelled() {
+        if next.get() as usize - points.len() > most || cancelled() {
             return None;
         }
         let handles = [from, to].map(spade::handles::FixedVertexHandle::from_index);
@@ -202,7 +206,7 @@ mod tests {
         let points: Vec<Uv> = square(2.0).into_iter().chain(square(1.0)).collect();
         let ring = |s: u32| (0..4).map(move |i| [s + i, s + (i + 1) % 4]);
         let segments: Vec<_> = ring(0).chain(ring(4)).collect();
-        let cut = delaunay(&points, &segments, &Cancel::new()).unwrap();
+        let cut = delaunay(&points, &segments, &|| false).unwrap();
         let area = |region| {
             let inside = cut.triangles.iter().zip(&cut.regions).filter(move |t| *t.1 == region);
             inside.map(|t| 0.5 * doubled_area(&points, t.0)).sum::<f64>()
@@ -216,7 +220,7 @@ mod tests {
     #[test]
     fn crossing_segments_are_split() {
         let points = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
-        let cut = delaunay(&points, &[[0, 1], [2, 3]], &Cancel::new()).unwrap();
+        let cut = delaunay(&points, &[[0, 1], [2, 3]], &|| false).unwrap();
         assert_eq!(cut.added, [[0.5, 0.5]]);
         assert_eq!(cut.triangles.len(), 4);
     }
