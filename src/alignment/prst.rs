@@ -49,7 +49,7 @@ const EQUAL: f64 = 0.01;
 
 /// The principal symmetry axes; those of continuous PCA for a mesh without area.
 pub fn axes(mesh: &Mesh, measures: &Measures, cancel: &Cancel) -> Result<[Vector; 3], Cancelled> {
-    let samples = sample_mesh(mesh, SAMPLES);
+    let samples = sample_mesh(mesh, SAMPLES, 0);
     if samples.is_empty() {
         return Ok(cpca::axes(mesh));
     }

@@ -15,11 +15,13 @@ pub struct Sample {
 }
 
 /// About `count` samples spread evenly over the area of the whole mesh: each triangle gets its share by a running
-/// remainder and low-discrepancy points inside, so that the same mesh gives the same samples.
-pub fn sample_mesh(mesh: &Mesh, count: usize) -> Vec<Sample> {
+/// remainder and low-discrepancy points inside, so that the same mesh gives the same samples. To others of which there
+/// are `before` these are new ones.
+pub fn sample_mesh(mesh: &Mesh, count: usize, before: usize) -> Vec<Sample> {
     let total: f64 = (0..mesh.triangles.len()).map(|t| mesh.doubled_normal(t).norm()).sum();
     let ids = (0..mesh.faces.len()).map(|i| PlacedFaceId(i as u32));
-    let mut spread = Spread::new(total / count.max(1) as f64);
+    let mut spread = Spread { before, ..Spread::new(total / count.max(1) as f64) };
+    spread.samples.reserve(count + 1);
     ids.for_each(|id| spread.add_face(mesh, id));
     spread.samples
 }
@@ -36,12 +38,14 @@ pub fn sample_face(mesh: &Mesh, id: PlacedFaceId, count: usize) -> Vec<Sample> {
 struct Spread {
     step: f64,
     owed: f64,
+    /// Samples drawn earlier.
+    before: usize,
     samples: Vec<Sample>,
 }
 
 impl Spread {
     fn new(step: f64) -> Self {
-        Self { step, owed: 0.5, samples: Vec::new() }
+        Self { step, owed: 0.5, before: 0, samples: Vec::new() }
     }
 
     fn add_face(&mut self, mesh: &Mesh, id: PlacedFaceId) {
@@ -55,7 +59,7 @@ impl Spread {
             let corners = mesh.corners(t);
             while self.owed >= 1.0 {
                 self.owed -= 1.0;
-                let point = pick(&corners, self.samples.len());
+                let point = pick(&corners, self.before + self.samples.len());
                 self.samples.push(Sample { point, normal: doubled / area, face: id });
             }
         }
@@ -90,9 +94,11 @@ mod tests {
             flux: 0.0,
         };
         let mesh = Mesh { points, triangles: vec![[0, 1, 2], [0, 3, 1]], faces: vec![face] };
-        let samples = sample_mesh(&mesh, 100);
+        let samples = sample_mesh(&mesh, 100, 0);
         assert_eq!(samples.len(), 100);
         assert_eq!(samples.iter().filter(|s| s.point.y > 0.0).count(), 80);
         assert!(samples.iter().all(|s| s.normal == Vector::z()));
+        let more = sample_mesh(&mesh, 100, 100);
+        assert!(more.iter().all(|s| samples.iter().all(|t| t.point != s.point)));
     }
 }

@@ -77,7 +77,8 @@ impl PlaneIndex {
 
     fn cell(&self, i: usize, x: f64) -> i32 {
         let width = if i < 3 { NORMAL_CELL } else { 8.0 * self.distance };
-        (x / width).floor() as i32
+        // Normals along the axes, by far the most frequent, have components in the middle of their cells.
+        (x / width + 0.5).floor() as i32
     }
 }
 

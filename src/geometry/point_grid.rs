@@ -33,7 +33,8 @@ impl PointGrid {
     }
 
     fn cell(&self, p: &Point, shift: f64) -> [i64; 3] {
-        std::array::from_fn(|i| ((p[i] + shift) / self.width).floor() as i64)
+        // What is in the middle of a model is in the middle of a cell.
+        std::array::from_fn(|i| ((p[i] + shift) / self.width + 0.5).floor() as i64)
     }
 
     /// The numbers of the points within `radius` of `p`, cell by cell and in growing order in each.

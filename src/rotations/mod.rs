@@ -22,7 +22,7 @@ use crate::geometry::revolution::{TURNS, turn};
 use crate::geometry::{Axis, Isometry, Matrix, Point, Vector, any_perpendicular};
 use crate::stages::merge::Symmetries;
 use crate::stages::parse::Parsed;
-use crate::stages::validate::support::{Round, SurfaceField};
+use crate::stages::validate::support::SurfaceField;
 
 /// What counts as a symmetry.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,7 +113,7 @@ impl Search<'_> {
         let isometry = self.about_centre(rotation);
         // What 500 samples say is off by 0.02 at most.
         Ok(self.field.reaches(&isometry, self.needed - 0.02).is_some()
-            && self.field.support(&isometry, Round::Full, self.needed, self.cancel)? >= self.needed)
+            && self.field.support(&self.parsed.mesh, &isometry, self.cancel)?.share >= self.needed)
     }
 
     fn is_axis(&self, direction: &Vector) -> Result<bool, Cancelled> {

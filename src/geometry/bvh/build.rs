@@ -4,7 +4,7 @@ use super::{Child, LEAF, Node};
 use crate::geometry::sides::Sides;
 
 /// Places tried for a cut.
-const BINS: usize = 16;
+const BINS: usize = 8;
 
 /// A triangle while the tree is built.
 #[derive(Clone, Copy)]

@@ -7,7 +7,6 @@ use crate::stages::pair_match::Corners;
 use crate::stages::validate;
 use crate::stages::validate::ValidatedPlane;
 use crate::stages::validate::faces::FaceSamples;
-use crate::stages::validate::support::Round;
 
 /// Groups whose support is measured: the reported coverage does not take part in the choice.
 const MEASURED: usize = 16;
@@ -39,8 +38,8 @@ pub(super) fn planes(merger: &Merger) -> Result<Vec<SymmetryPlane>, Cancelled> {
     groups.retain(|g| g.volume >= largest * (1.0 - merger.options.reported));
     let measured = |g: &Group| {
         let reflection = g.leader.plane.reflection();
-        let coverage = merger.validated.field.support(&reflection, Round::Full, 0.0, merger.cancel)?;
-        Ok(SymmetryPlane { coverage, ..merger.refitted(g.leader) })
+        let support = merger.validated.field.support(&merger.parsed.mesh, &reflection, merger.cancel)?;
+        Ok(SymmetryPlane { coverage: support.share, error: support.error, ..merger.refitted(g.leader) })
     };
     groups.iter().map(measured).collect()
 }

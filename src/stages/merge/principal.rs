@@ -5,25 +5,28 @@
 //! planes.
 
 use super::open::Open;
-use super::{Merger, SymmetryPlane};
+use super::{COARSE_DOUBT, Merger, SymmetryPlane};
+use crate::alignment::npca;
 use crate::brep::sample::Sample;
 use crate::cancel::Cancelled;
 use crate::geometry::principal::symmetric_eigen;
 use crate::geometry::{Matrix, Plane, Vector, any_perpendicular};
 use crate::stages::isometry::Source;
-use crate::stages::validate::support::{Round, SurfaceField};
+use crate::stages::validate::support::Round;
 
 /// Eigenvalues closer than this (as a share of the larger) leave their vectors open: those depend on the pose.
 const DISTINCT: f64 = 1e-3;
-/// Eigenvalues closer than this may be equal: the share of 20,000 samples that chance moves, and the triangles.
+/// Eigenvalues closer than this may be equal: what triangles miss of round bodies.
 const OPEN: f64 = 0.03;
 /// A plane this near (radians, share of D) to one already known is not polished: exact planes only get worse.
 const KNOWN: (f64, f64) = (0.035, 0.01);
 /// Radii of the rounds of polishing, as shares of D: wide first and with every fourth sample of the first round only,
 /// to be caught, ..
 const CATCH: [(f64, usize); 7] = [(0.04, 4), (0.04, 4), (0.03, 4), (0.02, 1), (0.015, 1), (0.01, 1), (0.006, 1)];
-/// .. then tight, with those of the second.
-const TIGHTEN: [f64; 2] = [0.006, 0.004];
+/// .. then tight, with every eighth and every fourth sample of two rounds.
+const TIGHTEN: [(f64, usize); 2] = [(0.006, 8), (0.004, 4)];
+/// A step by less than this (radians and share of D together) ends the catching.
+const STILL: f64 = 1e-4;
 /// What a plane may be below the best by 500 samples, for in the end only those that tie with it are kept (`rank`); and
 /// once more while it is not polished yet.
 const ROUGH: f64 = 0.05;
@@ -33,7 +36,7 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
     let field = &merger.validated.field;
     let best = pool.iter().map(|p| p.coverage).fold(0.0, f64::max);
     let mut found: Vec<SymmetryPlane> = Vec::new();
-    let axes = Axes::of(merger, field);
+    let axes = Axes::of(merger);
     let mut normals = axes.distinct.clone();
     if let Some(open) = &axes.open {
         normals.extend(open.promising(merger)?);
@@ -60,7 +63,8 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
 /// A plane that faces do not speak for.
 pub(super) fn candidate(plane: Plane, coverage: f64, residual: f64) -> SymmetryPlane {
     let source = Source::Principal;
-    SymmetryPlane { plane, coverage, residual, pairs: Vec::new(), selfs: Vec::new(), source, correlation: None }
+    let error = COARSE_DOUBT / 3.0;
+    SymmetryPlane { plane, coverage, error, residual, pairs: Vec::new(), selfs: Vec::new(), source, correlation: None }
 }
 
 fn near(a: &Plane, b: &Plane, merger: &Merger) -> bool {
@@ -78,14 +82,8 @@ struct Axes {
 }
 
 impl Axes {
-    fn of(merger: &Merger, field: &SurfaceField) -> Self {
-        let centroid = merger.parsed.measures.centroid;
-        let (mut points, mut normals) = (Matrix::zeros(), Matrix::zeros());
-        for sample in field.samples(Round::Full) {
-            let d = sample.point - centroid;
-            points += d * d.transpose();
-            normals += sample.normal * sample.normal.transpose();
-        }
+    fn of(merger: &Merger) -> Self {
+        let (points, normals) = (merger.covariance, npca::covariance(&merger.parsed.mesh));
         let mut distinct: Vec<Vector> = Vec::new();
         for axis in [points, normals].iter().flat_map(distinct_axes) {
             if distinct.iter().all(|known| known.cross(&axis).norm() > KNOWN.0) {
@@ -96,7 +94,7 @@ impl Axes {
     }
 }
 
-/// The directions between principal axes that samples do not tell apart.
+/// The directions between principal axes that the surface does not tell apart.
 fn open(points: &Matrix) -> Option<Open> {
     let (values, vectors) = symmetric_eigen(points);
     match (!apart(&values, 0, 1, OPEN), !apart(&values, 1, 2, OPEN)) {
@@ -143,13 +141,17 @@ pub(super) fn polish(
     for (i, radius) in CATCH.into_iter().enumerate() {
         // Half of it at first: the start may be off.
         let least = if i < 2 { 0.5 * needed } else { needed - ROUGH };
-        plane = wanted(&plane).then(|| round(&plane, radius, Round::Coarse, least))??;
+        let (moved, change) = wanted(&plane).then(|| round(&plane, radius, Round::Coarse, least))??;
+        plane = moved;
+        if i >= 2 && change < STILL {
+            break;
+        }
     }
     if !wanted(&plane) || field.reaches(&plane.reflection(), needed).is_none() {
         return None;
     }
     for radius in TIGHTEN {
-        plane = round(&plane, (radius, 1), Round::Middle, needed - ROUGH)?;
+        plane = round(&plane, radius, Round::Middle, needed - ROUGH)?.0;
     }
     Some((plane, residual))
 }
@@ -204,8 +206,8 @@ impl Step {
         (step.met > 0).then_some(step)
     }
 
-    /// The plane after the step; directions in which nothing is determined stay as they are.
-    fn solved(&self, plane: &Plane, merger: &Merger) -> Option<Plane> {
+    /// The plane after the step, and how far that was; directions in which nothing is determined stay as they are.
+    fn solved(&self, plane: &Plane, merger: &Merger) -> Option<(Plane, f64)> {
         let inverse = self.matrix.pseudo_inverse(1e-6 * self.matrix.norm()).ok()?;
         let change = inverse * self.right;
         let (centroid, size) = (merger.parsed.measures.centroid, merger.parsed.measures.tolerance.size());
@@ -213,6 +215,6 @@ impl Step {
         let normal = (plane.normal + tilt).try_normalize(0.0)?;
         let offset = -plane.signed_distance(&centroid) + change.z * size;
         let moved = Plane { normal, offset: normal.dot(&centroid.coords) + offset };
-        (moved.offset.is_finite() && tilt.norm() < 0.5).then_some(moved)
+        (moved.offset.is_finite() && tilt.norm() < 0.5).then_some((moved, change.norm()))
     }
 }

@@ -88,18 +88,20 @@ impl Key {
     fn of(merger: &Merger, plane: &SymmetryPlane) -> Self {
         let measures = &merger.parsed.measures;
         let size = measures.tolerance.size();
-        let samples = merger.validated.field.samples(Round::Full);
-        let mean = |f: &dyn Fn(&crate::brep::sample::Sample) -> f64| {
-            samples.iter().map(f).sum::<f64>() / samples.len().max(1) as f64
-        };
-        let normal: Vector = plane.plane.normal;
+        let (mesh, normal): (_, Vector) = (&merger.parsed.mesh, plane.plane.normal);
+        let (mut facing, mut area) = (0.0, 0.0);
+        for doubled in (0..mesh.triangles.len()).map(|t| mesh.doubled_normal(t)) {
+            facing += doubled.dot(&normal).abs();
+            area += doubled.norm();
+        }
+        let distance = plane.plane.signed_distance(&measures.centroid);
         let steps = |x: f64, step: f64| (x / (step * size)).round() as i64;
         Self {
             silhouette: f64::INFINITY,
             residual: steps(plane.residual, 1e-5),
-            distance: steps(plane.plane.signed_distance(&measures.centroid).abs(), 1e-4),
-            shadow: mean(&|s| s.normal.dot(&normal).abs()),
-            moment: mean(&|s| (plane.plane.signed_distance(&s.point) / size).powi(2)),
+            distance: steps(distance.abs(), 1e-4),
+            shadow: facing / area,
+            moment: (normal.dot(&(merger.covariance * normal)) + distance.powi(2)) / (size * size),
         }
     }
 }

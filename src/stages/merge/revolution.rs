@@ -72,9 +72,7 @@ fn turns(merger: &Merger, axis: &Axis) -> Result<bool, Cancelled> {
     let (field, needed) = (&merger.validated.field, merger.options.revolution);
     for angle in TURNS {
         let turn = rotation(axis, angle);
-        if field.reaches(&turn, needed - 0.02).is_none()
-            || field.support(&turn, Round::Middle, needed, merger.cancel)? < needed
-        {
+        if field.reaches(&turn, needed - 0.02).is_none() || field.middle(&turn, needed, merger.cancel)?.share < needed {
             return Ok(false);
         }
     }
@@ -90,7 +88,7 @@ fn rotation(axis: &Axis, angle: f64) -> Isometry {
 pub(super) fn restrict(merger: &Merger, axes: &[Axis], pool: &mut Vec<SymmetryPlane>) -> Result<(), Cancelled> {
     let Some(axis) = axes.first() else { return Ok(()) };
     let turn = rotation(axis, TURNS[0]);
-    if merger.validated.field.support(&turn, Round::Middle, WHOLE, merger.cancel)? >= WHOLE {
+    if merger.validated.field.middle(&turn, WHOLE, merger.cancel)?.share >= WHOLE {
         pool.clear();
     } else {
         pool.retain(|p| p.coverage >= WHOLE);
@@ -106,7 +104,7 @@ pub(super) fn restrict(merger: &Merger, axes: &[Axis], pool: &mut Vec<SymmetryPl
     Ok(())
 }
 
-/// Spreads across the axis that differ by less than this share are equal: what the samples miss of a round body.
+/// Spreads across the axis that differ by less than this share are equal: what the triangles miss of a round body.
 const ROUND: f64 = 0.005;
 
 /// A direction at right angles to the axis: the one along which the surface spreads most. Where it spreads equally the
@@ -115,14 +113,9 @@ const ROUND: f64 = 0.005;
 fn direction_across(merger: &Merger, axis: &Axis) -> Vector {
     let first = any_perpendicular(&axis.direction);
     let second = axis.direction.cross(&first);
-    let (mut cosine, mut sine, mut spread) = (0.0, 0.0, 0.0);
-    for sample in merger.validated.field.samples(Round::Full) {
-        let d = sample.point - axis.point;
-        let (x, y) = (d.dot(&first), d.dot(&second));
-        cosine += x * x - y * y;
-        sine += 2.0 * x * y;
-        spread += x * x + y * y;
-    }
+    let (cx, cy) = (merger.covariance * first, merger.covariance * second);
+    let (xx, xy, yy) = (first.dot(&cx), first.dot(&cy), second.dot(&cy));
+    let (cosine, sine, spread) = (xx - yy, 2.0 * xy, xx + yy);
     let corners = merger.parsed.mesh.points.iter().map(|p| axis.radial(p));
     let farthest = corners.max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
     if cosine.hypot(sine) <= ROUND * spread

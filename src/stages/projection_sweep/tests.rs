@@ -15,6 +15,7 @@ fn symmetric(normal: Vector, through: &Point) -> Symmetries {
     let plane = SymmetryPlane {
         plane: Plane::through(through, &normal),
         coverage: 1.0,
+        error: 0.0,
         residual: 0.0,
         pairs: Vec::new(),
         selfs: Vec::new(),

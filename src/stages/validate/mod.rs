@@ -16,6 +16,7 @@ pub mod faces;
 mod quads;
 pub mod shape;
 pub mod support;
+mod tally;
 mod whole_faces;
 
 use crate::cancel::{Cancel, Cancelled};
@@ -32,7 +33,8 @@ use support::SurfaceField;
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Options {
-    /// Samples of the whole surface; 2,000 rank planes wrongly.
+    /// Samples of the whole surface, a fifth of them for planes that are no closer than that to each other or to the bound
+    /// of a label; 2,000 rank planes wrongly.
     pub samples: usize,
     /// A mirrored sample lies on the surface within this share of D: above the chords of the tessellation.
     pub on_surface: f64,
@@ -154,6 +156,9 @@ pub fn validate(
             cancel.check().map_err(cancelled)?;
             let least = if group.paired { 0.05 } else { SELF_EVIDENT - DOUBT };
             let needed = (best - options.slack).max(least);
+            if group.plane.signed_distance(&parsed.measures.centroid).abs() > farthest(parsed, &field, needed) {
+                continue;
+            }
             let Some(coarse) = field.reaches(&group.plane.reflection(), needed) else { continue };
             best = best.max(coarse);
             planes.extend(check(group, coarse, matches, &field, &mut samples));
@@ -161,6 +166,14 @@ pub fn validate(
         planes.retain(|p| p.coarse >= best - options.slack);
     }
     Ok(Validated { planes, field, repeats: candidates.repeats })
+}
+
+/// The largest distance from the centroid of a plane that maps a share of the surface onto it, mm. What it does not map
+/// makes up for all of the distance between the centroid and its image, and is no farther than D (and that distance)
+/// from where it would have to be.
+fn farthest(parsed: &Parsed, field: &SurfaceField, share: f64) -> f64 {
+    let rest = (1.0 - share + DOUBT).max(0.0);
+    0.5 * rest / (1.0 - rest).max(0.0) * parsed.measures.tolerance.size() + field.radius()
 }
 
 /// The paper: every pair stands for itself.

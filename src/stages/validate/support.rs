@@ -1,6 +1,10 @@
 //! Surface support: the share of a surface that an isometry maps onto the surface.
 
+use std::sync::OnceLock;
+
 use super::quads::{Quads, is_near};
+pub use super::tally::Support;
+use super::tally::Tally;
 use super::whole_faces::WholeFaces;
 use crate::brep::sample::{Sample, sample_mesh};
 use crate::brep::{Mesh, PlacedFaceId};
@@ -10,8 +14,8 @@ use crate::geometry::sides::Neighbours;
 use crate::geometry::{Isometry, Point, Vector};
 use crate::stages::parse::Parsed;
 
-/// Every how many-th sample belongs to the first round, and to the first two.
-const STRIDES: [usize; 2] = [40, 5];
+/// Every how many-th of all samples belongs to the first two rounds, and every how many-th of these to the first.
+const STRIDES: [usize; 2] = [5, 8];
 
 /// Images of whole faces may be off by this share of the radius.
 const SAME: f64 = 0.05;
@@ -26,10 +30,12 @@ pub struct SurfaceField {
     tree: Bvh,
     quads: Quads,
     whole: WholeFaces,
-    /// In an order in which every beginning is spread over the surface (as far as the rounds go).
+    /// Those of the first round, then those of the second.
     samples: Vec<Sample>,
-    /// Samples in the first, first two, and all rounds.
-    rounds: [usize; 3],
+    /// Samples of the first round.
+    coarse: usize,
+    /// Samples of the third round, drawn when first asked for, and about how many.
+    last: (OnceLock<Vec<Sample>>, usize),
     /// Distance within which a point lies on the surface, mm.
     radius: f64,
     /// Least cosine between normals that agree.
@@ -40,15 +46,13 @@ pub struct SurfaceField {
     oriented: bool,
 }
 
-/// How exactly a support is measured.
+/// Samples that are asked before the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Round {
     /// A fortieth of the samples: finds planes that are out of the question.
     Coarse,
     /// A fifth.
     Middle,
-    /// All.
-    Full,
 }
 
 impl SurfaceField {
@@ -56,7 +60,8 @@ impl SurfaceField {
     pub fn new(parsed: &Parsed, count: usize, share: f64, cosine: f64) -> Self {
         let mesh = &parsed.mesh;
         let tree = Bvh::new(mesh.triangles.len(), numbered_triangles(mesh));
-        let (samples, rounds) = in_rounds(&sample_mesh(mesh, count));
+        let first = count.div_ceil(STRIDES[0]);
+        let (samples, coarse) = coarse_first(&sample_mesh(mesh, first, 0), STRIDES[1]);
         let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
         let (radius, agreeing) = (parsed.measures.tolerance.length(share), Neighbours::within(cosine, !oriented));
         Self {
@@ -64,7 +69,8 @@ impl SurfaceField {
             quads: Quads::of(mesh),
             whole: WholeFaces::of(mesh, SAME * radius, !oriented),
             samples,
-            rounds,
+            coarse,
+            last: (OnceLock::new(), count - first),
             radius,
             cosine,
             agreeing,
@@ -74,7 +80,10 @@ impl SurfaceField {
 
     /// The samples of a round and those before it.
     pub fn samples(&self, round: Round) -> &[Sample] {
-        &self.samples[..self.rounds[round as usize]]
+        match round {
+            Round::Coarse => &self.samples[..self.coarse],
+            Round::Middle => &self.samples,
+        }
     }
 
     /// Distance within which a point lies on the surface, mm.
@@ -119,48 +128,60 @@ impl SurfaceField {
         self.maps_near(isometry, sample, self.radius, recent)
     }
 
-    /// The share of the samples that `isometry` maps onto the surface, 0 to 1; where it cannot be `needed`, something
-    /// smaller than that.
+    /// The share of the samples of two rounds that `isometry` maps onto the surface; where it cannot be `needed`,
+    /// something smaller than that.
     ///
     /// # Errors
     /// When cancelled.
-    pub fn support(&self, isometry: &Isometry, round: Round, needed: f64, cancel: &Cancel) -> Result<f64, Cancelled> {
-        self.share(isometry, (0, round), 0, needed, cancel)
+    pub fn middle(&self, isometry: &Isometry, needed: f64, cancel: &Cancel) -> Result<Support, Cancelled> {
+        self.share(isometry, (Tally::default(), self.samples.len()), &self.samples, needed, cancel)
     }
 
-    /// The full support, where that of the middle round is known: its samples are not asked again.
+    /// The share of all samples, where that of two rounds is known.
     ///
     /// # Errors
     /// When cancelled.
-    pub fn completed(&self, isometry: &Isometry, middle: f64, needed: f64, cancel: &Cancel) -> Result<f64, Cancelled> {
-        let first = self.rounds[Round::Middle as usize];
-        let known = (middle * first as f64).round() as usize;
-        self.share(isometry, (first, Round::Full), known, needed, cancel)
+    pub fn completed(
+        &self,
+        mesh: &Mesh,
+        isometry: &Isometry,
+        middle: Support,
+        cancel: &Cancel,
+    ) -> Result<Support, Cancelled> {
+        let asked = self.samples.len();
+        let samples = self.last.0.get_or_init(|| sample_mesh(mesh, self.last.1, asked));
+        self.share(isometry, (Tally::from(middle, asked), asked + samples.len()), samples, 0.0, cancel)
     }
 
-    /// The share of the samples of a round that are mapped, of which the `first` ones are known to have some `hits`.
+    /// The share of all samples.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn support(&self, mesh: &Mesh, isometry: &Isometry, cancel: &Cancel) -> Result<Support, Cancelled> {
+        let middle = self.middle(isometry, 0.0, cancel)?;
+        self.completed(mesh, isometry, middle, cancel)
+    }
+
+    /// The share of `count` samples: of those tallied already, and of others.
     fn share(
         &self,
         isometry: &Isometry,
-        (first, round): (usize, Round),
-        mut hits: usize,
+        (mut tally, count): (Tally, usize),
+        samples: &[Sample],
         needed: f64,
         cancel: &Cancel,
-    ) -> Result<f64, Cancelled> {
-        let samples = self.samples(round);
-        let (count, mut recent) = (samples.len().max(1) as f64, Recent::default());
+    ) -> Result<Support, Cancelled> {
+        let mut recent = Recent::default();
         // A little less than needed, for rounding.
-        let most_missed = ((1.0 - needed) * count).ceil() as usize + 1;
-        let mut asked = first;
-        for of_face in samples[first..].chunk_by(|a, b| a.face == b.face) {
+        let most_missed = ((1.0 - needed) * count as f64).ceil() as usize + 1;
+        for of_face in samples.chunk_by(|a, b| a.face == b.face) {
             cancel.check()?;
-            hits += self.hits(isometry, of_face, &mut recent);
-            asked += of_face.len();
-            if asked - hits > most_missed {
+            tally.add(of_face.len(), self.hits(isometry, of_face, &mut recent));
+            if tally.missed() > most_missed {
                 break;
             }
         }
-        Ok(hits as f64 / count)
+        Ok(tally.support(count))
     }
 
     /// How many samples of one face are mapped.
@@ -197,7 +218,7 @@ impl SurfaceField {
             let maps_face = || self.whole.maps(isometry, sample.face);
             let is_whole = *whole[sample.face.index()].get_or_insert_with(maps_face);
             hits += usize::from(is_whole || self.maps(isometry, sample, &mut recent));
-            if n >= 16 && n % 8 == 0 {
+            if n >= 8 && n % 4 == 0 {
                 let share = hits as f64 / n as f64;
                 let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();
                 if share + 3.0 * deviation < needed {
@@ -216,15 +237,13 @@ fn numbered_triangles(mesh: &Mesh) -> impl Iterator<Item = ([Point; 3], u32)> {
         .flat_map(move |i| mesh.triangles_of(PlacedFaceId(i)).map(move |t| (mesh.corners(t), i)))
 }
 
-/// Samples in the order of their rounds, and how many there are up to the end of each.
-fn in_rounds(samples: &[Sample]) -> (Vec<Sample>, [usize; 3]) {
-    let round = |i: usize| STRIDES.iter().position(|s| i.is_multiple_of(*s)).unwrap_or(STRIDES.len());
-    let mut ordered = Vec::with_capacity(samples.len());
-    let ends = std::array::from_fn(|r| {
-        ordered.extend((0..samples.len()).filter(|&i| round(i) == r).map(|i| samples[i]));
-        ordered.len()
-    });
-    (ordered, ends)
+/// Every `stride`-th sample, then the others; and how many come first.
+fn coarse_first(samples: &[Sample], stride: usize) -> (Vec<Sample>, usize) {
+    let mut ordered: Vec<_> = samples.iter().step_by(stride).copied().collect();
+    let coarse = ordered.len();
+    let is_other = |(i, _): &(usize, &Sample)| !i.is_multiple_of(stride);
+    ordered.extend(samples.iter().enumerate().filter(is_other).map(|(_, s)| *s));
+    (ordered, coarse)
 }
 
 /// Whether the triangles enclose the volume of the solids: where faces are turned inside out they do not, and normals
