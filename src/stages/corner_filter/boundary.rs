@@ -35,69 +35,104 @@ impl Boundary {
     }
 }
 
-/// The loops around a group of faces: edges between two faces of the group and seams (used twice by one face) go,
-/// so do edges without length; what is left is chained again.
-pub(super) fn loops(model: &Model, group: &[FaceId], shapes: &EdgeShapes, corner_angle: f64) -> Vec<Boundary> {
-    let mut uses = Vec::new();
-    for face in group {
-        for face_loop in &model.faces[face.index()].loops {
+/// Finds the loops of one group of faces after the other, in the same memory.
+pub(super) struct Tracer<'a> {
+    pub model: &'a Model,
+    pub shapes: &'a EdgeShapes,
+    /// An edge shorter than this is a pole, mm.
+    pub shortest: f64,
+    /// Radians.
+    pub corner_angle: f64,
+    room: Room,
+}
+
+/// What is filled anew for each group.
+#[derive(Default)]
+struct Room {
+    /// Uses of edges, and whether their loop is called the outer one.
+    uses: Vec<(EdgeUse, bool)>,
+    edges: Vec<EdgeId>,
+    /// Where uses start, and their positions.
+    starts: Vec<(VertexId, usize)>,
+    used: Vec<bool>,
+    /// Positions of uses that follow each other.
+    chain: Vec<usize>,
+}
+
+impl<'a> Tracer<'a> {
+    pub fn new(model: &'a Model, shapes: &'a EdgeShapes, shortest: f64, corner_angle: f64) -> Self {
+        Self { model, shapes, shortest, corner_angle, room: Room::default() }
+    }
+
+    /// The loops around a group of faces: edges between two faces of the group and seams (used twice by one face) go,
+    /// so do edges without length; what is left is chained again.
+    pub fn loops(&mut self, group: &[FaceId]) -> Vec<Boundary> {
+        let (model, shapes, shortest) = (self.model, self.shapes, self.shortest);
+        let Room { uses, edges, starts, used, .. } = &mut self.room;
+        uses.clear();
+        for face_loop in group.iter().flat_map(|face| &model.faces[face.index()].loops) {
             uses.extend(face_loop.uses.iter().map(|&u| (u, face_loop.outer)));
         }
+        edges.clear();
+        edges.extend(uses.iter().map(|(u, _)| u.edge));
+        edges.sort_unstable();
+        let once = |edge: EdgeId| edges.get(edges.partition_point(|e| *e < edge) + 1) != Some(&edge);
+        uses.retain(|(u, _)| once(u.edge) && shapes.length(u.edge) > shortest);
+        starts.clear();
+        starts.extend(uses.iter().enumerate().map(|(i, (edge_use, _))| (ends(model, edge_use).0, i)));
+        starts.sort_unstable();
+        used.clear();
+        used.resize(uses.len(), false);
+        let mut loops = Vec::with_capacity(1);
+        for first in 0..used.len() {
+            if self.chain(first) {
+                loops.push(self.boundary());
+            }
+        }
+        loops
     }
-    let mut edges: Vec<EdgeId> = uses.iter().map(|(u, _)| u.edge).collect();
-    edges.sort_unstable();
-    let once = |edge: EdgeId| edges.get(edges.partition_point(|e| *e < edge) + 1) != Some(&edge);
-    uses.retain(|(u, _)| once(u.edge) && !shapes.is_degenerate(u.edge));
-    let chains = chains(model, &uses);
-    chains.iter().map(|chain| boundary(chain, shapes, corner_angle)).collect()
+
+    /// Chains uses head to tail; false where the first one is in a chain already. A chain that does not close (a broken
+    /// file) is kept as it is.
+    fn chain(&mut self, first: usize) -> bool {
+        let Room { uses, starts, used, chain, .. } = &mut self.room;
+        chain.clear();
+        let mut next = (!used[first]).then_some(first);
+        while let Some(i) = next {
+            used[i] = true;
+            chain.push(i);
+            let end = ends(self.model, &uses[i].0).1;
+            let leaving = &starts[starts.partition_point(|s| s.0 < end)..];
+            next = leaving.iter().take_while(|s| s.0 == end).map(|s| s.1).find(|&j| !used[j]);
+        }
+        !chain.is_empty()
+    }
+
+    /// The loop that the chain makes.
+    fn boundary(&self) -> Boundary {
+        let chain = || self.room.chain.iter().map(|&i| self.room.uses[i]);
+        let count = chain().map(|(u, _)| self.shapes.count(u.edge)).sum();
+        let mut result = Boundary { points: Vec::with_capacity(count), ..Boundary::default() };
+        let Some((last, _)) = chain().next_back() else { return result };
+        let mut incoming = self.shapes.leaving(&last);
+        for (edge_use, outer) in chain() {
+            let first = result.points.len();
+            self.shapes.add_points(&edge_use, &mut result.points);
+            if turn(&incoming, &self.shapes.entering(&edge_use)) > self.corner_angle {
+                result.corners.extend(result.points.get(first));
+            }
+            incoming = self.shapes.leaving(&edge_use);
+            result.length += self.shapes.length(edge_use.edge);
+            result.outer |= outer;
+        }
+        result
+    }
 }
 
 /// The two ends of an edge use, in the direction of the loop.
 fn ends(model: &Model, edge_use: &EdgeUse) -> (VertexId, VertexId) {
     let edge = &model.edges[edge_use.edge.index()];
     if edge_use.forward { (edge.start, edge.end) } else { (edge.end, edge.start) }
-}
-
-/// Chains uses head to tail. A chain that does not close (a broken file) is kept as it is.
-fn chains(model: &Model, uses: &[(EdgeUse, bool)]) -> Vec<Vec<(EdgeUse, bool)>> {
-    // Where uses start, and their positions.
-    let mut starts: Vec<(VertexId, usize)> =
-        uses.iter().enumerate().map(|(i, (edge_use, _))| (ends(model, edge_use).0, i)).collect();
-    starts.sort_unstable();
-    let mut used = vec![false; uses.len()];
-    let mut chains = Vec::new();
-    for first in 0..uses.len() {
-        let mut chain = Vec::new();
-        let mut next = (!used[first]).then_some(first);
-        while let Some(i) = next {
-            used[i] = true;
-            chain.push(uses[i]);
-            let end = ends(model, &uses[i].0).1;
-            let leaving = &starts[starts.partition_point(|s| s.0 < end)..];
-            next = leaving.iter().take_while(|s| s.0 == end).map(|s| s.1).find(|&j| !used[j]);
-        }
-        if !chain.is_empty() {
-            chains.push(chain);
-        }
-    }
-    chains
-}
-
-fn boundary(chain: &[(EdgeUse, bool)], shapes: &EdgeShapes, corner_angle: f64) -> Boundary {
-    let mut result = Boundary::default();
-    let last = chain[chain.len() - 1].0;
-    let mut incoming = shapes.leaving(&last);
-    for (edge_use, outer) in chain {
-        let first = result.points.len();
-        shapes.add_points(edge_use, &mut result.points);
-        if turn(&incoming, &shapes.entering(edge_use)) > corner_angle {
-            result.corners.extend(result.points.get(first));
-        }
-        incoming = shapes.leaving(edge_use);
-        result.length += shapes.length(edge_use.edge);
-        result.outer |= outer;
-    }
-    result
 }
 
 /// Angle between two directions, radians; a cusp turns by pi. Unknown directions (zero) count as a corner.

@@ -1,103 +1,127 @@
 //! The edges of a body as polylines with the exact tangents at their ends.
 
-use rustc_hash::FxHashMap;
+use std::ops::Range;
 
 use crate::brep::{Curve, Edge, EdgeId, EdgeUse, FaceId, Model};
 use crate::geometry::{Point, Vector};
 
 /// Pieces a curved edge is cut into: enough to tell areas and centroids of loops apart.
 const PIECES: usize = 16;
+/// The place of an edge that no face has asked for.
+const NOWHERE: u32 = u32::MAX;
 
 /// An edge from its start to its end.
 #[derive(Clone, Debug)]
 struct EdgeShape {
-    /// Both ends included.
-    points: Vec<Point>,
+    /// Where its points are, both ends included.
+    points: Range<usize>,
     /// Directions of travel at the start and at the end; zero where unknown.
     tangents: [Vector; 2],
     /// Arc length, mm.
     length: f64,
 }
 
-/// The shapes of all edges of some faces.
-#[derive(Clone, Debug, Default)]
+/// The shapes of the edges of some faces.
+#[derive(Clone, Debug)]
 pub(super) struct EdgeShapes {
-    shapes: FxHashMap<EdgeId, EdgeShape>,
-    /// An edge shorter than this is a pole, mm.
-    shortest: f64,
+    /// For each edge of the model its place among the shapes.
+    places: Vec<u32>,
+    shapes: Vec<EdgeShape>,
+    points: Vec<Point>,
 }
 
 impl EdgeShapes {
-    /// Evaluates the edges of `faces`; those shorter than `shortest` (mm) count as poles.
-    pub fn of(model: &Model, faces: &[FaceId], shortest: f64) -> Self {
-        let mut shapes = FxHashMap::default();
-        for face in faces {
-            for edge_use in model.faces[face.index()].loops.iter().flat_map(|l| &l.uses) {
-                let edge = &model.edges[edge_use.edge.index()];
-                shapes.entry(edge_use.edge).or_insert_with(|| EdgeShape::of(model, edge));
-            }
-        }
-        Self { shapes, shortest }
+    /// No shapes yet.
+    pub fn new(model: &Model) -> Self {
+        Self { places: vec![NOWHERE; model.edges.len()], shapes: Vec::new(), points: Vec::new() }
     }
 
-    /// Whether the edge has no length.
-    pub fn is_degenerate(&self, edge: EdgeId) -> bool {
-        let length = self.shapes[&edge].length;
-        length.is_nan() || length <= self.shortest
+    /// Evaluates the edges of `faces`.
+    pub fn add(&mut self, model: &Model, faces: &[FaceId]) {
+        let loops = faces.iter().flat_map(|face| &model.faces[face.index()].loops);
+        for edge_use in loops.flat_map(|l| &l.uses) {
+            let place = &mut self.places[edge_use.edge.index()];
+            if *place == NOWHERE {
+                *place = self.shapes.len() as u32;
+                let edge = &model.edges[edge_use.edge.index()];
+                self.shapes.push(EdgeShape::of(model, edge, &mut self.points));
+            }
+        }
+    }
+
+    fn shape(&self, edge: EdgeId) -> &EdgeShape {
+        &self.shapes[self.places[edge.index()] as usize]
     }
 
     /// Arc length of an edge, mm.
     pub fn length(&self, edge: EdgeId) -> f64 {
-        self.shapes[&edge].length
+        self.shape(edge).length
     }
 
     /// Adds the points along the use, without the last one.
     pub fn add_points(&self, edge_use: &EdgeUse, out: &mut Vec<Point>) {
-        let points = &self.shapes[&edge_use.edge].points;
+        let points = &self.points[self.shape(edge_use.edge).points.clone()];
         let last = points.len() - 1;
         if edge_use.forward { out.extend_from_slice(&points[..last]) } else { out.extend(points[1..].iter().rev()) }
     }
 
+    /// How many points [`Self::add_points`] adds.
+    pub fn count(&self, edge: EdgeId) -> usize {
+        self.shape(edge).points.len() - 1
+    }
+
     /// Direction of travel at the beginning of the use.
     pub fn entering(&self, edge_use: &EdgeUse) -> Vector {
-        let [start, end] = self.shapes[&edge_use.edge].tangents;
+        let [start, end] = self.shape(edge_use.edge).tangents;
         if edge_use.forward { start } else { -end }
     }
 
     /// Direction of travel at the end of the use.
     pub fn leaving(&self, edge_use: &EdgeUse) -> Vector {
-        let [start, end] = self.shapes[&edge_use.edge].tangents;
+        let [start, end] = self.shape(edge_use.edge).tangents;
         if edge_use.forward { end } else { -start }
     }
 }
 
 impl EdgeShape {
-    fn of(model: &Model, edge: &Edge) -> Self {
+    /// Evaluates an edge and adds its points.
+    fn of(model: &Model, edge: &Edge, points: &mut Vec<Point>) -> Self {
         let ends = [edge.start, edge.end].map(|v| model.vertices[v.index()].point);
-        let Some(curve) = edge.curve.as_deref() else { return Self::straight(ends) };
-        if let Curve::Line { .. } = curve {
-            return Self::straight(ends);
+        match edge.curve.as_deref() {
+            None | Some(Curve::Line { .. }) => Self::straight(ends, points),
+            Some(curve) => Self::bent(curve, edge, ends, points),
         }
-        let [first, last] = range(curve, edge, &ends);
-        let at = |i: usize| first + (last - first) * i as f64 / (2 * PIECES) as f64;
-        let jets: Vec<_> = (0..=2 * PIECES).map(|i| curve.derivatives(at(i))).collect();
-        let mut points: Vec<_> = jets.iter().step_by(2).map(|j| Point::from(j[0])).collect();
-        (points[0], points[PIECES]) = (ends[0], ends[1]);
-        let speed = |i: usize| jets[i][1].norm();
-        let panels = (0..PIECES).map(|i| speed(2 * i) + 4.0 * speed(2 * i + 1) + speed(2 * i + 2));
-        let length = panels.sum::<f64>() * (last - first).abs() / (6 * PIECES) as f64;
-        let sense = (last - first).signum();
-        let tangents = [
-            direction(&jets[0], sense, 1.0, points[1] - points[0]),
-            direction(&jets[2 * PIECES], sense, -1.0, points[PIECES] - points[PIECES - 1]),
-        ];
-        Self { points, tangents, length }
     }
 
-    fn straight([start, end]: [Point; 2]) -> Self {
+    fn straight([start, end]: [Point; 2], points: &mut Vec<Point>) -> Self {
         let along = end - start;
         let tangent = along.try_normalize(0.0).unwrap_or_else(Vector::zeros);
-        Self { points: vec![start, end], tangents: [tangent; 2], length: along.norm() }
+        points.extend([start, end]);
+        Self { points: points.len() - 2..points.len(), tangents: [tangent; 2], length: along.norm() }
+    }
+
+    fn bent(curve: &Curve, edge: &Edge, ends: [Point; 2], points: &mut Vec<Point>) -> Self {
+        let [first, last] = range(curve, edge, &ends);
+        let jet = |i: usize| curve.derivatives(first + (last - first) * i as f64 / (2 * PIECES) as f64);
+        let tips = [jet(0), jet(2 * PIECES)];
+        let from = points.len();
+        points.push(ends[0]);
+        // By Simpson's rule, for which each piece is halved; a circle has one speed.
+        let mut speeds = tips[0][1].norm() + tips[1][1].norm();
+        let circle = matches!(curve, Curve::Circle { .. });
+        for i in (1..2 * PIECES).filter(|i| !circle || i % 2 == 0) {
+            let [p, d, _] = jet(i);
+            speeds += d.norm() * if i % 2 == 0 { 2.0 } else { 4.0 };
+            if i % 2 == 0 {
+                points.push(Point::from(p));
+            }
+        }
+        points.push(ends[1]);
+        let mean = if circle { tips[0][1].norm() } else { speeds / (6 * PIECES) as f64 };
+        let sense = (last - first).signum();
+        let chords = [points[from + 1] - ends[0], ends[1] - points[points.len() - 2]];
+        let tangents = [direction(&tips[0], sense, 1.0, chords[0]), direction(&tips[1], sense, -1.0, chords[1])];
+        Self { points: from..points.len(), tangents, length: mean * (last - first).abs() }
     }
 }
 

@@ -20,12 +20,13 @@ pub(super) fn groups(
             }
         }
     }
-    Ok(joined.groups().into_iter().map(|group| group.into_iter().map(|i| faces[i]).collect()).collect())
+    Ok(joined.groups(faces))
 }
 
 /// Positions of two faces that share an edge which no third face uses, in the order of the edges.
 fn adjacent(model: &Model, faces: &[FaceId]) -> Vec<(usize, usize)> {
-    let mut users: Vec<(EdgeId, usize)> = Vec::new();
+    let count = faces.iter().flat_map(|face| &model.faces[face.index()].loops).map(|l| l.uses.len()).sum();
+    let mut users: Vec<(EdgeId, usize)> = Vec::with_capacity(count);
     for (i, face) in faces.iter().enumerate() {
         let uses = model.faces[face.index()].loops.iter().flat_map(|l| &l.uses);
         users.extend(uses.map(|u| (u.edge, i)));
@@ -139,16 +140,18 @@ impl Joined {
         self.0[a.max(b)] = a.min(b);
     }
 
-    fn groups(mut self) -> Vec<Vec<usize>> {
+    /// The sets, of what stands at these positions in `faces`.
+    fn groups(mut self, faces: &[FaceId]) -> Vec<Vec<FaceId>> {
         let mut at = vec![usize::MAX; self.0.len()];
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        for i in 0..self.0.len() {
+        let mut groups: Vec<Vec<FaceId>> = Vec::with_capacity(self.0.len());
+        for (i, &face) in faces.iter().enumerate() {
             let root = self.root(i);
             if root == i {
                 at[i] = groups.len();
-                groups.push(Vec::new());
+                groups.push(vec![face]);
+            } else {
+                groups[at[root]].push(face);
             }
-            groups[at[root]].push(i);
         }
         groups
     }

@@ -19,6 +19,8 @@ use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Axis, Point, Transform, Vector};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
+use boundary::Tracer;
+use edges::EdgeShapes;
 
 /// Settings of the stage.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -87,7 +89,8 @@ pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Res
     let model = &parsed.model;
     let placed = placed_faces(parsed);
     let mut of_body: Vec<Option<Vec<LocalOutline>>> = vec![None; model.bodies.len()];
-    let mut outlines = Vec::new();
+    let mut outlines = Vec::with_capacity(parsed.mesh.faces.len());
+    let mut shapes = EdgeShapes::new(model);
     for (occurrence, faces) in model.occurrences.iter().zip(&placed) {
         let cancelled = |c| ModelError::cancelled(Stage::CornerFilter, c);
         cancel.check().map_err(cancelled)?;
@@ -95,11 +98,12 @@ pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Res
             Some(local) => local,
             none => {
                 let placement = &occurrence.placement;
-                let found = body_outlines(parsed, occurrence.body, faces, placement, options, cancel);
+                let found = body_outlines(parsed, occurrence.body, faces, placement, &mut shapes, options, cancel);
                 none.insert(found.map_err(cancelled)?)
             }
         };
-        outlines.extend(local.iter().filter_map(|outline| outline.placed(parsed, faces, &occurrence.placement)));
+        let place = Place::new(&occurrence.placement);
+        outlines.extend(local.iter().filter_map(|outline| outline.placed(parsed, faces, &place)));
     }
     Ok(outlines)
 }
@@ -125,6 +129,21 @@ impl PlacedFaces {
     }
 }
 
+/// A placement with what each outline asks of it.
+struct Place<'a> {
+    placement: &'a Transform,
+    inverse: Option<Transform>,
+    determinant: f64,
+    scale: f64,
+}
+
+impl<'a> Place<'a> {
+    fn new(placement: &'a Transform) -> Self {
+        let (inverse, determinant) = (placement.inverse(), placement.linear.determinant());
+        Self { placement, inverse, determinant, scale: placement.scale() }
+    }
+}
+
 /// An outline in the coordinates of its body, the same for all occurrences.
 #[derive(Clone, Debug)]
 struct LocalOutline {
@@ -140,7 +159,8 @@ struct LocalOutline {
 
 impl LocalOutline {
     /// The outline in its occurrence; `None` where the mesh has none of its faces.
-    fn placed(&self, parsed: &Parsed, places: &PlacedFaces, placement: &Transform) -> Option<Outline> {
+    fn placed(&self, parsed: &Parsed, places: &PlacedFaces, place: &Place) -> Option<Outline> {
+        let placement = place.placement;
         let mut faces: Vec<_> = self.faces.iter().filter_map(|&f| places.find(f)).collect();
         faces.sort_unstable();
         let area: f64 = faces.iter().map(|f| parsed.mesh.faces[f.index()].area).sum();
@@ -149,9 +169,9 @@ impl LocalOutline {
         }
         let moment: Vector =
             faces.iter().map(|f| &parsed.mesh.faces[f.index()]).map(|f| f.centroid.coords * f.area).sum();
-        let scale = placement.scale();
+        let scale = place.scale;
         let mut corners: Vec<_> = self.corners.iter().map(|p| placement.point(p)).collect();
-        if self.runs_backwards(parsed, &faces, placement) {
+        if self.runs_backwards(parsed, &faces, place) {
             corners.reverse();
         }
         let inner =
@@ -172,14 +192,14 @@ impl LocalOutline {
 
     /// Whether the loops enclose the opposite of the mesh's vector area (Stokes): files break the rule of the left
     /// side, and a mirroring placement turns it round.
-    fn runs_backwards(&self, parsed: &Parsed, faces: &[PlacedFaceId], placement: &Transform) -> bool {
+    fn runs_backwards(&self, parsed: &Parsed, faces: &[PlacedFaceId], place: &Place) -> bool {
         let triangles = faces.iter().flat_map(|&f| parsed.mesh.triangles_of(f));
         let meshed: Vector = triangles.map(|t| parsed.mesh.doubled_normal(t)).sum();
         let doubled = meshed.norm();
-        let Some(inverse) = placement.inverse() else { return false };
-        let enclosed = inverse.linear.transpose() * self.vector_area * placement.linear.determinant();
+        let Some(inverse) = &place.inverse else { return false };
+        let enclosed = inverse.linear.transpose() * self.vector_area * place.determinant;
         let agreement = enclosed.dot(&meshed);
-        if agreement.abs() > 1e-3 * enclosed.norm() * doubled { agreement < 0.0 } else { placement.mirrors() }
+        if agreement.abs() > 1e-3 * enclosed.norm() * doubled { agreement < 0.0 } else { place.placement.mirrors() }
     }
 }
 
@@ -189,6 +209,7 @@ fn body_outlines(
     body: BodyId,
     places: &PlacedFaces,
     placement: &Transform,
+    shapes: &mut EdgeShapes,
     options: &Options,
     cancel: &Cancel,
 ) -> Result<Vec<LocalOutline>, Cancelled> {
@@ -196,12 +217,13 @@ fn body_outlines(
     let size = parsed.measures.tolerance.size() / placement.scale();
     let tolerance = options.same_surface * size;
     let faces: Vec<_> = model.faces_of(body).filter(|&f| places.find(f).is_some()).collect();
-    let shapes = edges::EdgeShapes::of(model, &faces, 1e-3 * tolerance);
+    shapes.add(model, &faces);
+    let mut tracer = Tracer::new(model, shapes, 1e-3 * tolerance, options.corner_angle_deg.to_radians());
     let groups = maximal::groups(model, &faces, options.maximal_faces.then_some(tolerance), cancel)?;
     let oriented = model.bodies[body.index()].solid;
     let outline = |group: Vec<crate::brep::FaceId>| {
         cancel.check()?;
-        let loops = boundary::loops(model, &group, &shapes, options.corner_angle_deg.to_radians());
+        let loops = tracer.loops(&group);
         let axis = if options.axes { axial::axis(parsed, places, &group, &loops, placement, tolerance) } else { None };
         Ok(boundary::outline(model, group, loops, axis, oriented))
     };
