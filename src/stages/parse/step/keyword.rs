@@ -14,14 +14,19 @@ macro_rules! kinds {
         }
 
         const ALL: &[Kind] = &[$(Kind::$name,)* Kind::Complex, Kind::Other];
+        const WORDS: &[&[u8]] = &[$($word,)*];
 
         impl Kind {
             /// The kind of an upper-case keyword.
             pub fn of(word: &[u8]) -> Self {
-                match word {
-                    $($word => Self::$name,)*
-                    _ => Self::Other,
+                let mut at = slot(word);
+                while let Some(known) = WORDS.get(usize::from(TABLE[at])) {
+                    if *known == word {
+                        return ALL[usize::from(TABLE[at])];
+                    }
+                    at = (at + 1) % SLOTS;
                 }
+                Self::Other
             }
 
             /// The kind with a code that [`Kind::code`] gave.
@@ -35,6 +40,35 @@ macro_rules! kinds {
             }
         }
     };
+}
+
+/// Places of [`TABLE`], some four for each word.
+const SLOTS: usize = 512;
+
+/// The word at each place by its number, 255 where there is none; words of one place stand behind each other.
+const TABLE: [u8; SLOTS] = {
+    let mut table = [u8::MAX; SLOTS];
+    let mut word = 0;
+    while word < WORDS.len() {
+        let mut at = slot(WORDS[word]);
+        while table[at] != u8::MAX {
+            at = (at + 1) % SLOTS;
+        }
+        table[at] = word as u8;
+        word += 1;
+    }
+    table
+};
+
+/// Where a word stands, by its length and four of its letters.
+const fn slot(word: &[u8]) -> usize {
+    let n = word.len();
+    if n == 0 {
+        return 0;
+    }
+    let letters = [word[0], word[n / 3], word[2 * n / 3], word[n - 1]];
+    (n + 5 * letters[0] as usize + 23 * letters[1] as usize + 91 * letters[2] as usize + 307 * letters[3] as usize)
+        % SLOTS
 }
 
 kinds! {

@@ -15,6 +15,17 @@ const LONGEST_KEYWORD: usize = 80;
 /// Offsets are kept in 56 bits, beside the 8 bits of the kind.
 const LONGEST_FILE: usize = 1 << 56;
 
+/// The letters of a keyword that is written as it should be.
+const PLAIN: [bool; 256] = {
+    let mut plain = [false; 256];
+    let mut b = 0;
+    while b < plain.len() {
+        plain[b] = (b as u8).is_ascii_uppercase() || (b as u8).is_ascii_digit() || b as u8 == b'_';
+        b += 1;
+    }
+    plain
+};
+
 /// An instance: its number, where the text behind its keyword (of a complex one: behind its parenthesis) starts, and
 /// its kind.
 #[derive(Clone, Copy, Debug)]
@@ -157,7 +168,7 @@ pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
         return (Kind::Complex, at + 1);
     }
     let rest = &bytes[at.min(bytes.len())..];
-    let length = rest.iter().take_while(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || **b == b'_').count();
+    let length = rest.iter().take_while(|b| PLAIN[usize::from(**b)]).count();
     if rest.get(length) == Some(&b'(') {
         return (Kind::of(&rest[..length]), at + length);
     }

@@ -19,6 +19,7 @@ mod facets;
 mod free_curves;
 mod header;
 mod keyword;
+mod known;
 mod lexer;
 mod placement;
 mod records;

@@ -82,6 +82,9 @@ impl<'a> Geometry<'a> {
         if !record.is(kind) {
             return Err(record.fault(otherwise));
         }
+        if let Some(values) = record.plain_triple() {
+            return Ok(values);
+        }
         let inheritance = match kind {
             Kind::Direction => &[Kind::RepresentationItem, Kind::Direction],
             _ => &[Kind::RepresentationItem, Kind::CartesianPoint],

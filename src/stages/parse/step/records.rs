@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::lexer::{Entry, Table, kind_at, skip_space};
+use crate::geometry::Vector;
 use crate::stages::parse::fault::{Fault, Read};
 
 /// The bytes of a file with the table of its instances.
@@ -17,14 +18,19 @@ pub(super) struct File<'a> {
 impl<'a> File<'a> {
     /// The table entry of an instance.
     pub fn entry(&self, id: u64) -> Option<Entry> {
+        self.place(id).map(|place| self.table.entries[place])
+    }
+
+    /// Where an instance stands in the table.
+    pub fn place(&self, id: u64) -> Option<usize> {
         let entries = &self.table.entries;
         let first = entries.first()?.id;
         // Most files number their instances without gaps: then this guess is right.
         let guess = usize::try_from(id.checked_sub(first)?).ok()?;
-        if let Some(entry) = entries.get(guess).filter(|e| e.id == id) {
-            return Some(*entry);
+        if entries.get(guess).is_some_and(|e| e.id == id) {
+            return Some(guess);
         }
-        entries.binary_search_by_key(&id, |e| e.id).ok().map(|i| entries[i])
+        entries.binary_search_by_key(&id, |e| e.id).ok()
     }
 
     /// The record of an instance.
@@ -89,6 +95,21 @@ impl<'a> Record<'a> {
         } else {
             Cursor::at(self.file, self.id, self.start)
         }
+    }
+
+    /// The three numbers of an instance without a name that has nothing else, written without spaces; `None` says nothing.
+    pub fn plain_triple(&self) -> Option<Vector> {
+        let text = &self.file.bytes[self.start..];
+        let mut rest = text.strip_prefix(b"('',(")?;
+        let mut values = [0.0_f64; 3];
+        for (value, end) in values.iter_mut().zip([b',', b',', b')']) {
+            let length;
+            (*value, length) = fast_float2::parse_partial(rest).ok()?;
+            let plain = value.is_finite() && matches!(rest[0], b'-' | b'.' | b'0'..=b'9');
+            rest = rest[length..].strip_prefix(&[end]).filter(|_| plain)?;
+        }
+        self.file.table.effort.spend(text.len() - rest.len());
+        Some(Vector::from(values))
     }
 
     /// The parameters of one part of a complex instance, or of a simple instance of this type.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::keyword::Kind;
+use super::known::{Known, Made};
 use super::placement::{Geometry, orthonormal};
 use super::records::Record;
 use super::units::Units;
@@ -28,11 +29,9 @@ pub(super) struct Builder<'a> {
     pub geometry: Geometry<'a>,
     pub model: Model,
     pub notes: Notes,
-    vertices: FxHashMap<u64, VertexId>,
-    edges: FxHashMap<u64, EdgeId>,
+    known: Known,
     /// Straight edges of poly loops, by the entities of their ends, the smaller first.
     straight_edges: FxHashMap<[u64; 2], EdgeId>,
-    curves: FxHashMap<u64, Arc<Curve>>,
     surfaces: FxHashMap<u64, Arc<Surface>>,
     /// Lists of coordinates that triangles share.
     pub(super) coordinates: FxHashMap<u64, Arc<[Point]>>,
@@ -48,13 +47,11 @@ pub(super) struct LooseFace {
 impl<'a> Builder<'a> {
     pub fn new(geometry: Geometry<'a>) -> Self {
         Self {
+            known: Known::new(&geometry.file),
             geometry,
             model: Model::empty(),
             notes: Notes::default(),
-            vertices: FxHashMap::default(),
-            edges: FxHashMap::default(),
             straight_edges: FxHashMap::default(),
-            curves: FxHashMap::default(),
             surfaces: FxHashMap::default(),
             coordinates: FxHashMap::default(),
         }
@@ -63,14 +60,20 @@ impl<'a> Builder<'a> {
     /// Reads from now on in these units; what was read in other units is not shared.
     pub fn use_units(&mut self, units: Units) {
         if units != self.geometry.units {
-            self.vertices.clear();
-            self.edges.clear();
+            self.known.clear();
             self.straight_edges.clear();
-            self.curves.clear();
             self.surfaces.clear();
             self.coordinates.clear();
             self.geometry.units = units;
         }
+    }
+
+    fn made(&self, id: u64) -> Option<Made> {
+        self.known.get(self.geometry.file.place(id))
+    }
+
+    fn note(&mut self, id: u64, made: Made) {
+        self.known.set(self.geometry.file.place(id), made);
     }
 
     pub(super) fn record(&self, id: u64) -> Read<Record<'a>> {
@@ -249,7 +252,7 @@ impl<'a> Builder<'a> {
     }
 
     fn poly_vertex(&mut self, id: u64) -> Read<VertexId> {
-        if let Some(&known) = self.vertices.get(&id) {
+        if let Some(Made::Vertex(known)) = self.made(id) {
             return Ok(known);
         }
         let point = self.geometry.point(id)?;
@@ -258,7 +261,7 @@ impl<'a> Builder<'a> {
 
     /// VERTEX_POINT.
     fn vertex(&mut self, id: u64) -> Read<VertexId> {
-        if let Some(&known) = self.vertices.get(&id) {
+        if let Some(Made::Vertex(known)) = self.made(id) {
             return Ok(known);
         }
         let record = self.record(id)?;
@@ -273,7 +276,7 @@ impl<'a> Builder<'a> {
     fn push_vertex(&mut self, entity: u64, point: Point) -> VertexId {
         let id = VertexId(self.model.vertices.len() as u32);
         self.model.vertices.push(Vertex { entity, point });
-        self.vertices.insert(entity, id);
+        self.note(entity, Made::Vertex(id));
         id
     }
 
@@ -304,7 +307,7 @@ impl<'a> Builder<'a> {
 
     /// EDGE_CURVE, SUBEDGE or EDGE.
     fn edge(&mut self, record: &Record, depth: u32) -> Read<EdgeId> {
-        if let Some(&known) = self.edges.get(&record.id) {
+        if let Some(Made::Edge(known)) = self.made(record.id) {
             return Ok(known);
         }
         let is_curve = record.is(Kind::EdgeCurve);
@@ -323,22 +326,22 @@ impl<'a> Builder<'a> {
         if curve.is_none() && start == end {
             return Err(record.fault("a closed edge without a curve"));
         }
+        let shaped = curve.is_some();
         let made = self.push_edge(Edge { entity: record.id, curve, start, end, same_sense });
-        self.edges.insert(record.id, made);
+        if let Some(curve) = geometry.filter(|_| is_curve && shaped) {
+            self.note(curve, Made::Curve(made));
+        }
+        self.note(record.id, Made::Edge(made));
         Ok(made)
     }
 
     /// The curve of an edge; where it cannot be read the edge becomes straight, with a warning.
     fn edge_curve(&mut self, record: &Record, id: u64) -> Option<Arc<Curve>> {
-        if let Some(known) = self.curves.get(&id) {
-            return Some(known.clone());
+        if let Some(Made::Curve(edge)) = self.made(id) {
+            return self.model.edges[edge.index()].curve.clone();
         }
         match self.geometry.curve(id) {
-            Ok(curve) => {
-                let curve = Arc::new(curve);
-                self.curves.insert(id, curve.clone());
-                Some(curve)
-            }
+            Ok(curve) => Some(Arc::new(curve)),
             Err(fault) => {
                 self.notes.warn(format!("edge #{} is taken as straight: #{}: {}", record.id, fault.entity, fault.why));
                 None
