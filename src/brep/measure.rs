@@ -39,16 +39,17 @@ fn add_conics(bounds: &mut Aabb, model: &Model, mesh: &Mesh) {
     for face in &mesh.faces {
         let placement = &model.occurrences[face.occurrence as usize].placement;
         let edges = model.faces[face.face.index()].loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);
-        edges.filter_map(|e| arcs[e.index()].as_ref()).for_each(|arc| arc.placed(placement).add_to(bounds));
+        for (edge, arc) in edges.filter_map(|e| Some((e, arcs[e.index()].as_ref()?))) {
+            arc.placed(placement).add_to(bounds, || model.edge_span(edge));
+        }
     }
 }
 
-/// Part of an ellipse: centre + x cos t + y sin t, t from one end to the other.
+/// An ellipse: centre + x cos t + y sin t.
 struct Arc {
     centre: Point,
     x: Vector,
     y: Vector,
-    ends: [f64; 2],
 }
 
 impl Arc {
@@ -58,26 +59,26 @@ impl Arc {
             Curve::Ellipse { placement, semi_x, semi_y } => (placement, [*semi_x, *semi_y]),
             _ => return None,
         };
-        let [from, to] = model.edge_span(edge)?;
-        let ends = [from.min(to), from.max(to)];
-        Some(Self { centre: placement.origin, x: placement.x * a, y: placement.y * b, ends })
+        Some(Self { centre: placement.origin, x: placement.x * a, y: placement.y * b })
     }
 
     fn placed(&self, by: &Transform) -> Self {
-        Self { centre: by.point(&self.centre), x: by.linear * self.x, y: by.linear * self.y, ..*self }
+        Self { centre: by.point(&self.centre), x: by.linear * self.x, y: by.linear * self.y }
     }
 
-    /// Adds the points that are extreme along a coordinate axis, where the whole ellipse leaves the box at all.
-    fn add_to(&self, bounds: &mut Aabb) {
+    /// Adds the points that are extreme along a coordinate axis and lie in the `span` of the edge, which is asked for
+    /// where the whole ellipse leaves the box at all.
+    fn add_to(&self, bounds: &mut Aabb, span: impl Fn() -> Option<[f64; 2]>) {
         for axis in 0..3 {
             let reach = self.x[axis].hypot(self.y[axis]);
             let middle = self.centre[axis];
             if middle - reach >= bounds.min[axis] && middle + reach <= bounds.max[axis] {
                 continue;
             }
+            let Some([from, to]) = span() else { return };
             let extreme = self.y[axis].atan2(self.x[axis]);
-            let mut t = extreme + PI * ((self.ends[0] - extreme) / PI).ceil();
-            while t <= self.ends[1] {
+            let mut t = extreme + PI * ((from.min(to) - extreme) / PI).ceil();
+            while t <= from.max(to) {
                 bounds.add(&(self.centre + self.x * t.cos() + self.y * t.sin()));
                 t += PI;
             }

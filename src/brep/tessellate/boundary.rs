@@ -33,6 +33,11 @@ pub(super) struct Path {
 }
 
 impl Path {
+    fn with_capacity(count: usize) -> Self {
+        let uv = || Vec::with_capacity(count);
+        Self { points: Vec::with_capacity(count), uv: uv(), middles: uv(), winding: [0, 0] }
+    }
+
     /// Signed area in parameter space (of the polygon, for paths that do not go round).
     pub fn signed_area(&self) -> f64 {
         let before = self.uv.last().into_iter().chain(&self.uv);
@@ -232,8 +237,12 @@ struct Tracer<'a> {
 
 impl Tracer<'_> {
     fn trace(&mut self, points: &[Point], middles: &[Point]) -> Result<Vec<Mapped>, Unmapped> {
-        let both = points.iter().zip(middles);
-        both.map(|(p, m)| self.map(p).and_then(|(uv, pole)| Ok((uv, self.map(m)?.0, pole)))).collect()
+        let mut mapped = Vec::with_capacity(points.len());
+        for (p, m) in points.iter().zip(middles) {
+            let (uv, pole) = self.map(p)?;
+            mapped.push((uv, self.map(m)?.0, pole));
+        }
+        Ok(mapped)
     }
 
     fn map(&mut self, p: &Point) -> Result<(Uv, Option<usize>), Unmapped> {
@@ -279,7 +288,7 @@ fn nearest_image(chart: &Chart, uv: Uv, to: Uv) -> Uv {
 /// Joins the mapped points: each comes within half a period of the one before; at a pole the path runs along the
 /// collapsed side from where it came in to where it goes out.
 fn unwrap(chart: &Chart, points: &[Point], mapped: &[Mapped], flipped: bool) -> Path {
-    let mut path = Path::default();
+    let mut path = Path::with_capacity(mapped.len());
     let nearest = |uv: Uv, to: Uv| nearest_image(chart, uv, to);
     let n = mapped.len();
     let mut last = mapped[0].0;

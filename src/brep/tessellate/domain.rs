@@ -132,7 +132,9 @@ impl Layout {
     }
 
     fn patch(&self, paths: &[Path]) -> Patch {
-        let mut patch = Patch { sides: self.sides.clone(), ..Patch::default() };
+        let count = paths.iter().map(|p| p.uv.len()).sum();
+        let (points, uv) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut patch = Patch { points, uv, triangles: Vec::new(), sides: self.sides.clone() };
         for &i in &self.order {
             patch.points.extend_from_slice(&paths[i].points);
             patch.uv.extend_from_slice(&paths[i].uv);

@@ -47,7 +47,8 @@ impl EdgeLines {
         cancel: &Cancel,
     ) -> Result<Self, Cancelled> {
         let free_form = edges_of_free_form_faces(model);
-        let mut lines = Self { points: Vec::new(), middles: Vec::new(), ranges: Vec::new(), free_form, most_points };
+        let [points, middles] = [(); 2].map(|()| Vec::with_capacity(4 * spans.len()));
+        let mut lines = Self { points, middles, ranges: Vec::with_capacity(spans.len()), free_form, most_points };
         for (index, span) in spans.iter().enumerate() {
             cancel.check()?;
             let range = lines.add(model, EdgeId(index as u32), *span, fineness);

@@ -4,6 +4,8 @@
 //! The quadrature takes the middles of the sides, which is exact for quadratic functions (Strang and Fix 1973), and of
 //! the rules that are so the one that asks for the fewest points: neighbours share them.
 
+use std::cell::Cell;
+
 use super::boundary::Path;
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
@@ -63,7 +65,13 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
                 INNER.iter().for_each(|&w| at(mix(patch, t, w), area / 3.0));
             })
         }
-        _ => shared_sides(patch, areas).for_each(|(middle, area)| at(middle, area)),
+        _ => {
+            let sides = shared_sides(patch, areas, SIDES.take());
+            sides.iter().for_each(|(side, area)| at(middle(patch, *side), *area));
+            if sides.capacity() < MOST_KEPT {
+                SIDES.set(sides);
+            }
+        }
     }
     for (path, side) in paths.iter().zip(&patch.sides) {
         for i in 0..path.uv.len() {
@@ -82,9 +90,21 @@ fn mix(patch: &Patch, triangle: &[u32; 3], w: [f64; 3]) -> Uv {
     [0, 1].map(|k| w[0] * a[k] + w[1] * b[k] + w[2] * c[k])
 }
 
-/// The middle of each side, with a third of the area of the triangles beside it.
-fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>) -> impl Iterator<Item = (Uv, f64)> {
-    let mut sides: Vec<([u32; 2], f64)> = Vec::with_capacity(3 * patch.triangles.len());
+/// The ends of a side, the smaller index first, and a third of the area of the triangles beside it.
+type Side = ([u32; 2], f64);
+
+/// Sides that a thread keeps room for at most.
+const MOST_KEPT: usize = 1 << 14;
+
+thread_local! {
+    /// Room for the sides of the thread's next face.
+    static SIDES: Cell<Vec<Side>> = const { Cell::new(Vec::new()) };
+}
+
+/// Each side once, written over `sides`.
+fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>, mut sides: Vec<Side>) -> Vec<Side> {
+    sides.clear();
+    sides.reserve(3 * patch.triangles.len());
     for ([a, b, c], area) in patch.triangles.iter().zip(areas) {
         let ordered = [[a, b], [b, c], [c, a]].map(|[a, b]| [*a.min(b), *a.max(b)]);
         sides.extend(ordered.map(|side| (side, area / 3.0)));
@@ -95,10 +115,12 @@ fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>) -> impl Iterato
         first.1 += if same { next.1 } else { 0.0 };
         same
     });
-    sides.into_iter().map(|([a, b], area)| {
-        let (a, b) = (patch.uv[a as usize], patch.uv[b as usize]);
-        ([0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])], area)
-    })
+    sides
+}
+
+fn middle(patch: &Patch, side: [u32; 2]) -> Uv {
+    let [a, b] = side.map(|i| patch.uv[i as usize]);
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
 }
 
 /// Centre and signed area of the piece between a chord and the parabola through its ends and the true middle;

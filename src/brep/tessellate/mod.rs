@@ -157,13 +157,17 @@ fn face_meshes(context: &Context, most: usize) -> Result<Vec<Result<FaceMesh, St
     let (faces, account) = (&context.model.faces, context.cancel.account());
     let (mut meshes, mut triangles) = (Vec::with_capacity(faces.len()), 0);
     for (batch, references) in faces.chunks(BATCH).zip(context.reference.chunks(BATCH)) {
-        let made: Vec<_> = if faces.len() < PARALLEL_FACES {
-            batch.iter().zip(references).map(one).collect::<Result<_, _>>()?
+        let before = meshes.len();
+        if faces.len() < PARALLEL_FACES {
+            for face in batch.iter().zip(references) {
+                meshes.push(one(face)?);
+            }
         } else {
-            batch.par_iter().zip(references).map(|face| account.within(|| one(face))).collect::<Result<_, _>>()?
-        };
-        triangles += made.iter().flatten().map(|mesh| mesh.triangles.len()).sum::<usize>();
-        meshes.extend(made);
+            let of_thread = |face| account.within(|| one(face));
+            let made: Vec<_> = batch.par_iter().zip(references).map(of_thread).collect::<Result<_, _>>()?;
+            meshes.extend(made);
+        }
+        triangles += meshes[before..].iter().flatten().map(|mesh: &FaceMesh| mesh.triangles.len()).sum::<usize>();
         if triangles > most {
             break;
         }

@@ -35,7 +35,7 @@ impl Placed {
         self.left_out += 1;
     }
 
-    fn add(&mut self, occurrence: u32, placement: &Transform, id: crate::brep::FaceId, face: &FaceMesh) {
+    fn add(&mut self, occurrence: u32, placement: &Transform, scale: f64, id: crate::brep::FaceId, face: &FaceMesh) {
         let mesh = &mut self.mesh;
         let (first_point, first_triangle) = (mesh.points.len() as u32, mesh.triangles.len() as u32);
         mesh.points.extend(face.points.iter().map(|p| placement.point(p)));
@@ -44,7 +44,6 @@ impl Placed {
             let [a, b, c] = t.map(|i| i + first_point);
             if turn { [a, c, b] } else { [a, b, c] }
         }));
-        let scale = placement.scale();
         mesh.faces.push(MeshFace {
             face: id,
             occurrence,
@@ -80,10 +79,11 @@ pub(super) fn place(
     placed.mesh.triangles.reserve_exact(sizes(|face| face.triangles.len()));
     for (index, occurrence) in model.occurrences.iter().enumerate() {
         cancel.check()?;
+        let scale = occurrence.placement.scale();
         for id in model.faces_of(occurrence.body) {
             match faces.get(id.index()) {
                 Some(Ok(face)) if placed.mesh.triangles.len() + face.triangles.len() <= max_triangles => {
-                    placed.add(index as u32, &occurrence.placement, id, face);
+                    placed.add(index as u32, &occurrence.placement, scale, id, face);
                 }
                 Some(Err(_)) => {}
                 _ => placed.leave_out(model.faces[id.index()].entity, max_triangles),
