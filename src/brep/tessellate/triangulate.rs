@@ -16,6 +16,9 @@ const CROSSINGS_A_POINT: usize = 2;
 /// Polygons with more points than this are left to the Delaunay triangulation: ears of tangled ones take cubic time.
 const MOST_EARS: usize = 4000;
 
+/// Quadrilaterals that turn by less at a corner, as a share of their area, are no plain ones.
+const FLAT: f64 = 1e-6;
+
 /// How much the triangles' area may differ from the polygon's, as a share.
 const AREA_SLACK: f64 = 1e-6;
 
@@ -30,6 +33,11 @@ pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32
     if points.len() > MOST_EARS {
         return None;
     }
+    if let (Ok(corners), [_]) = (points.try_into(), rings)
+        && let Some(halves) = halves(corners)
+    {
+        return Some(halves.to_vec());
+    }
     let holes: Vec<u32> = rings.iter().skip(1).map(|&r| r as u32).collect();
     let mut indices: Vec<u32> = Vec::with_capacity(3 * points.len());
     EARCUT.with_borrow_mut(|ears| ears.earcut(points.iter().copied(), &holes, &mut indices));
@@ -43,6 +51,19 @@ pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32
         sum += 0.5 * twice.abs();
     }
     ((sum - area).abs() <= AREA_SLACK * area).then_some(triangles)
+}
+
+/// The halves of a convex quadrilateral, cut as the ears would be.
+fn halves(corners: &[Uv; 4]) -> Option<[[u32; 3]; 2]> {
+    let turns = [[0, 1, 2], [1, 2, 3], [2, 3, 0], [3, 0, 1]].map(|t| doubled_area(corners, &t));
+    let least = FLAT * turns.iter().map(|t| t.abs()).sum::<f64>();
+    if turns.iter().all(|t| *t > least) {
+        Some([[2, 3, 0], [2, 0, 1]])
+    } else if turns.iter().all(|t| *t < -least) {
+        Some([[1, 0, 3], [1, 3, 2]])
+    } else {
+        None
+    }
 }
 
 /// Twice the signed area of a triangle.
@@ -215,6 +236,23 @@ mod tests {
         areas.sort_by(f64::total_cmp);
         assert_eq!(areas, [4.0, 12.0]);
         assert_eq!(ears(&points, &[0, 4], 12.0).unwrap().len(), 8);
+    }
+
+    #[test]
+    fn convex_quadrilaterals_are_halved_as_ears_are_cut() {
+        let corners = [[0.0, 0.0], [3.0, 1.0], [2.0, 4.0], [-1.0, 2.0]];
+        let mut reversed = corners;
+        reversed.reverse();
+        for corners in [corners, reversed] {
+            let mut cut: Vec<u32> = Vec::new();
+            Earcut::new().earcut(corners.iter().copied(), &[], &mut cut);
+            assert_eq!(halves(&corners).unwrap().as_flattened(), cut);
+            // Half of 0 + 10 + 8 + 0, the cross products of neighbours.
+            assert_eq!(ears(&corners, &[0], 9.0).unwrap().len(), 2);
+        }
+        assert_eq!(halves(&[[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]), None, "a dart");
+        assert_eq!(halves(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), None, "a bow");
+        assert_eq!(halves(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0]]), None, "a triangle");
     }
 
     #[test]

@@ -15,17 +15,6 @@ const LONGEST_KEYWORD: usize = 80;
 /// Offsets are kept in 56 bits, beside the 8 bits of the kind.
 const LONGEST_FILE: usize = 1 << 56;
 
-/// The letters of a keyword that is written as it should be.
-const PLAIN: [bool; 256] = {
-    let mut plain = [false; 256];
-    let mut b = 0;
-    while b < plain.len() {
-        plain[b] = (b as u8).is_ascii_uppercase() || (b as u8).is_ascii_digit() || b as u8 == b'_';
-        b += 1;
-    }
-    plain
-};
-
 /// An instance: its number, where the text behind its keyword (of a complex one: behind its parenthesis) starts, and
 /// its kind.
 #[derive(Clone, Copy, Debug)]
@@ -168,13 +157,21 @@ pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
         return (Kind::Complex, at + 1);
     }
     let rest = &bytes[at.min(bytes.len())..];
-    let length = rest.iter().take_while(|b| PLAIN[usize::from(**b)]).count();
-    if rest.get(length) == Some(&b'(') {
-        return (Kind::of(&rest[..length]), at + length);
+    if let Some(length) = memchr(b'(', &rest[..rest.len().min(LONGEST_KEYWORD)]) {
+        let kind = Kind::of(&rest[..length]);
+        // All letters are looked at, which is faster than to stop at the first bad one.
+        if kind != Kind::Other || rest[..length].iter().fold(length > 0, |plain, b| plain & is_plain(*b)) {
+            return (kind, at + length);
+        }
     }
     let mut buffer = [0; LONGEST_KEYWORD];
     let (length, after) = keyword(bytes, at, &mut buffer);
     (Kind::of(&buffer[..length]), after)
+}
+
+/// Whether a byte belongs to a keyword that is written as it should be.
+fn is_plain(b: u8) -> bool {
+    b.is_ascii_uppercase() | b.is_ascii_digit() | (b == b'_')
 }
 
 /// Copies the keyword at `at` in upper case without the spaces and line breaks inside; its length, and the place behind.
