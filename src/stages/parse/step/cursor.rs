@@ -104,7 +104,15 @@ impl<'a, 'r> Cursor<'a, 'r> {
 
     /// Skips one parameter of any form.
     pub fn skip(&mut self) {
-        if self.peek().is_some() {
+        // Most of what is skipped are empty names and stars with a parameter right behind the comma.
+        let length = match &self.bytes[self.at..] {
+            [b'\'', b'\'', b',', b'#' | b'(' | b'*', ..] => 3,
+            [b'*', b',', b'#' | b'*', ..] => 2,
+            _ => 0,
+        };
+        if length > 0 {
+            self.at += length;
+        } else if self.peek().is_some() {
             self.skip_balanced();
             self.finish_value();
         }
@@ -118,10 +126,6 @@ impl<'a, 'r> Cursor<'a, 'r> {
 
     /// To the comma or closing parenthesis that ends the value at the cursor, or just behind a closed list.
     fn skip_balanced(&mut self) {
-        if self.bytes[self.at..].starts_with(b"'',") {
-            self.at += 2;
-            return;
-        }
         let mut depth = 0_u32;
         while let Some(b) = self.bytes.get(self.at) {
             match b {
@@ -176,7 +180,7 @@ impl<'a, 'r> Cursor<'a, 'r> {
 
     /// A finite number; integers and typed parameters (`LENGTH_MEASURE(1.)`) too.
     pub fn real(&mut self) -> Read<f64> {
-        match self.peek() {
+        let value = match self.peek() {
             Some(b) if b.is_ascii_alphabetic() => {
                 let after = kind_at(self.bytes, self.at).1;
                 if self.bytes.get(after) != Some(&b'(') {
@@ -188,15 +192,12 @@ impl<'a, 'r> Cursor<'a, 'r> {
                 if self.bytes.get(self.at) == Some(&b')') {
                     self.at += 1;
                 }
-                self.finish_value();
-                Ok(value)
+                value
             }
-            _ => {
-                let value = self.plain_real()?;
-                self.finish_value();
-                Ok(value)
-            }
-        }
+            _ => self.plain_real()?,
+        };
+        self.finish_value();
+        Ok(value)
     }
 
     fn plain_real(&mut self) -> Read<f64> {
@@ -250,6 +251,10 @@ impl<'a, 'r> Cursor<'a, 'r> {
 
     /// `.T.` or `.F.`; `None` for `.U.`, `$`, `*` and everything else.
     pub fn flag(&mut self) -> Option<bool> {
+        if let [b'.', letter @ (b'T' | b'F'), b'.', b')', ..] = self.bytes[self.at..] {
+            self.at += 3;
+            return Some(letter == b'T');
+        }
         match self.word() {
             b"T" | b"t" | b"TRUE" => Some(true),
             b"F" | b"f" | b"FALSE" => Some(false),

@@ -12,6 +12,8 @@ use crate::cancel::{Cancel, Cancelled};
 const CHECK_EVERY: usize = 1 << 14;
 /// The longest keyword that is compared: longer ones are of no known type.
 const LONGEST_KEYWORD: usize = 80;
+/// Numbers of so many digits fit into 64 bits.
+const SAFE_DIGITS: usize = 19;
 /// Offsets are kept in 56 bits, beside the 8 bits of the kind.
 const LONGEST_FILE: usize = 1 << 56;
 
@@ -56,7 +58,7 @@ pub(super) struct Table {
 pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
     let bytes = &bytes[..bytes.len().min(LONGEST_FILE)];
     let effort = Effort::new(bytes.len(), cancel);
-    let mut table = Table { entries: Vec::with_capacity(bytes.len() / 96), effort, ..Table::default() };
+    let mut table = Table { entries: Vec::with_capacity(bytes.len() / 40), effort, ..Table::default() };
     let mut broken_strings = 0_usize;
     let (mut at, mut count, mut ended) = (0, 0, false);
     loop {
@@ -144,9 +146,12 @@ fn instance(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
 pub(super) fn number(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
     let mut end = at;
     let mut value = 0_u64;
-    while let Some(digit) = bytes.get(end).filter(|b| b.is_ascii_digit()) {
-        value = value.checked_mul(10)?.checked_add(u64::from(digit - b'0'))?;
+    while let Some(digit) = bytes.get(end).map(|b| b.wrapping_sub(b'0')).filter(|digit| *digit < 10) {
+        value = value.wrapping_mul(10).wrapping_add(u64::from(digit));
         end += 1;
+    }
+    if end - at > SAFE_DIGITS {
+        value = std::str::from_utf8(&bytes[at..end]).ok()?.parse().ok()?;
     }
     (end > at).then_some((value, end))
 }
