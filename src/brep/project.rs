@@ -9,8 +9,6 @@ use crate::geometry::{Point, Vector};
 const STEPS: usize = 30;
 /// A step this small, as a share of the parameter range, ends the iteration.
 const SMALL_STEP: f64 = 1e-12;
-/// So does one of this size with all second derivatives: what is still missing is about its square.
-const SQUARED: f64 = 1e-8;
 /// Samples in each knot span when there is no hint.
 const SAMPLES: usize = 12;
 /// Lines and points this near to a plane, as a sine or a share of the size, lie in it.
@@ -154,7 +152,7 @@ fn newton_on_surface(surface: &Surface, ranges: &[Range; 2], p: &Point, hint: [f
         }
         let moved = ((next[0] - uv[0]).abs() / ranges[0].width()).max((next[1] - uv[1]).abs() / ranges[1].width());
         (uv, jet) = (next, value);
-        if !moved.is_finite() || moved <= if positive { SQUARED } else { SMALL_STEP } {
+        if !moved.is_finite() || moved <= SMALL_STEP {
             break;
         }
     }
@@ -289,8 +287,7 @@ fn closest_by(
     for _ in 0..STEPS {
         let [r, d, dd] = jet;
         let full = d.norm_squared() + r.dot(&dd);
-        let positive = full > 0.1 * d.norm_squared();
-        let bend = if positive { full } else { d.norm_squared() };
+        let bend = if full > 0.1 * d.norm_squared() { full } else { d.norm_squared() };
         let mut step = if bend > 0.0 { -r.dot(&d) / bend } else { 0.0 };
         let mut next = range.hold(t + step);
         let mut value = error(next);
@@ -304,7 +301,7 @@ fn closest_by(
         }
         let moved = (next - t).abs() / range.width();
         (t, jet) = (next, value);
-        if moved.is_nan() || moved <= if positive { SQUARED } else { SMALL_STEP } {
+        if moved.is_nan() || moved <= SMALL_STEP {
             break;
         }
     }
