@@ -61,5 +61,6 @@ pub mod render;
 pub mod rotations;
 pub mod search;
 pub mod settings;
+pub mod silhouette;
 pub mod stages;
 pub mod store;

@@ -5,18 +5,19 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Each module of the crate, and the modules it may name.
-const LAYERS: [(&str, &[&str]); 18] = [
+const LAYERS: [(&str, &[&str]); 19] = [
     ("geometry", &[]),
     ("memory", &[]),
     ("cancel", &["memory"]),
     ("brep", &["geometry", "cancel"]),
     ("alignment", &["geometry", "brep", "cancel"]),
-    ("stages", &["geometry", "brep", "cancel", "alignment"]),
+    ("silhouette", &["alignment", "geometry", "brep", "cancel"]),
+    ("stages", &["geometry", "brep", "cancel", "alignment", "silhouette"]),
     ("aligned", &["geometry", "brep", "stages"]),
     ("error", &[]),
     ("archive", &["error"]),
     ("settings", &["alignment", "error", "stages"]),
-    ("render", &["geometry", "brep", "cancel", "stages", "error"]),
+    ("render", &["geometry", "brep", "cancel", "silhouette", "stages", "error"]),
     ("rotations", &["alignment", "geometry", "brep", "cancel", "stages"]),
     ("store", &["alignment", "error", "geometry", "stages"]),
     ("distance", &["stages", "cancel"]),

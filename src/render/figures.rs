@@ -8,7 +8,7 @@ use tiny_skia::{Color, Paint as Fill, Pixmap, PremultipliedColorU8, Rect, Transf
 use crate::brep::PlacedFaceId;
 use crate::cancel::Cancel;
 use crate::geometry::{Frame, Plane, Point};
-use crate::stages::descriptor::silhouette::Silhouette;
+use crate::silhouette::Silhouette;
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 use crate::stages::projection_sweep::CanonicalFrame;

@@ -1,6 +1,6 @@
 //! Outer contours, traced along the boundaries of pixels.
 
-use super::silhouette::Silhouette;
+use crate::silhouette::Silhouette;
 
 /// A closed polygon in pixel units, counter-clockwise (first image axis right, second up).
 #[derive(Clone, Debug, PartialEq)]

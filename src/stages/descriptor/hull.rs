@@ -5,7 +5,7 @@
 //! the centroid less the gap between hull and shape. For a convex shape that is the centroid distance itself.
 
 use super::contour::{Contour, boundaries};
-use super::silhouette::Silhouette;
+use crate::silhouette::Silhouette;
 
 /// The convex hull of all covered pixels, counter-clockwise; `None` for an empty picture.
 pub fn hull(picture: &Silhouette) -> Option<Contour> {

@@ -10,21 +10,19 @@
 //! It does not promise anything about holes: only outer contours are described.
 
 pub mod contour;
-mod draw;
 pub mod fourier;
 pub mod hull;
-pub mod silhouette;
 
 use crate::brep::Mesh;
 use crate::brep::measure::Measures;
 use crate::cancel::Cancel;
 use crate::geometry::Frame;
+use crate::silhouette::Silhouette;
+use crate::silhouette::draw::Raster;
 use crate::stages::{ModelError, Stage};
 
 use contour::Contour;
-use draw::Raster;
 use fourier::{Path, Start};
-use silhouette::Silhouette;
 
 /// Harmonics kept of each contour.
 pub const HARMONICS: usize = 32;

@@ -19,7 +19,6 @@ mod paper;
 mod principal;
 mod rank;
 mod revolution;
-mod silhouette;
 #[cfg(test)]
 mod tests;
 
@@ -208,7 +207,7 @@ impl Merger<'_> {
             let axes = revolution::axes(self)?;
             let mut pool = self.pool(&axes)?;
             self.measure(&mut pool, &mut images)?;
-            (rank::ordered(self, pool), axes)
+            (rank::ordered(self, pool)?, axes)
         };
         let best = planes.first().map_or(0.0, |p| p.coverage);
         let label = self.label(best);

@@ -1,12 +1,16 @@
 //! The order of planes: by support, and where that ties, by what no pose changes.
 
-use super::{Merger, SymmetryPlane, silhouette};
-use crate::geometry::Vector;
+use super::{Merger, SymmetryPlane};
+use crate::cancel::Cancelled;
+use crate::geometry::{Plane, Vector, any_perpendicular};
+use crate::silhouette::draw::Raster;
 use crate::stages::isometry::Source;
 use crate::stages::validate::support::Round;
 
 /// Tied planes whose silhouettes are drawn, those with the smallest mean shadow.
 const DRAWN: usize = 16;
+/// Pixels along a side of them.
+const PIXELS: usize = 256;
 /// Silhouettes closer than this (relative) are equal: a few rows of pixels.
 const EQUAL_AREA: f64 = 0.02;
 /// Silhouettes that differ by more than this are not those of planes that the model maps onto each other.
@@ -14,7 +18,7 @@ const UNLIKE_AREA: f64 = 0.004;
 
 /// Sorts the measured planes, best first, and drops those that only the principal axes suggest unless they are as
 /// good as the best: their place below it is an accident of the starting direction.
-pub(super) fn ordered(merger: &Merger, mut pool: Vec<SymmetryPlane>) -> Vec<SymmetryPlane> {
+pub(super) fn ordered(merger: &Merger, mut pool: Vec<SymmetryPlane>) -> Result<Vec<SymmetryPlane>, Cancelled> {
     pool.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
     let best = pool.first().map_or(0.0, |p| p.coverage);
     let tied = |p: &SymmetryPlane| p.coverage >= best - merger.options.tie;
@@ -23,9 +27,9 @@ pub(super) fn ordered(merger: &Merger, mut pool: Vec<SymmetryPlane>) -> Vec<Symm
     let mut copies = copies.into_iter();
     pool.retain(|_| !copies.next().unwrap_or(false));
     let rest = pool.split_off(pool.partition_point(tied));
-    let mut ordered = settled(merger, pool);
+    let mut ordered = settled(merger, pool)?;
     ordered.extend(rest);
-    ordered
+    Ok(ordered)
 }
 
 /// Planes at a larger angle (radians) are never one: they meet again in half a turn of 60.
@@ -51,23 +55,32 @@ fn is_copy(merger: &Merger, plane: &SymmetryPlane, pool: &[SymmetryPlane]) -> bo
 }
 
 /// Orders planes of equal support.
-fn settled(merger: &Merger, tied: Vec<SymmetryPlane>) -> Vec<SymmetryPlane> {
+fn settled(merger: &Merger, tied: Vec<SymmetryPlane>) -> Result<Vec<SymmetryPlane>, Cancelled> {
     if tied.len() < 2 {
-        return tied;
+        return Ok(tied);
     }
     let mut keyed: Vec<_> = tied.into_iter().map(|p| (Key::of(merger, &p), p)).collect();
     keyed.sort_by(|a, b| a.0.shadow.total_cmp(&b.0.shadow));
-    let measures = &merger.parsed.measures;
-    let size = measures.tolerance.size();
     for (key, plane) in keyed.iter_mut().take(DRAWN) {
-        key.silhouette = silhouette::area(&merger.parsed.mesh, &plane.plane, &measures.centroid, size);
+        key.silhouette = shadow_along(merger, &plane.plane)?;
     }
     let mut ordered = Vec::new();
     while !keyed.is_empty() {
         let first = first_of(&keyed);
         ordered.push(keyed.remove(first).1);
     }
-    ordered
+    Ok(ordered)
+}
+
+/// Area of the model's shadow along the normal of a plane, mm^2, by pixels.
+fn shadow_along(merger: &Merger, plane: &Plane) -> Result<f64, Cancelled> {
+    let (mesh, measures) = (&merger.parsed.mesh, &merger.parsed.measures);
+    let scale = PIXELS as f64 / measures.tolerance.size();
+    let raster = Raster { centre: measures.centroid, scale, side: PIXELS };
+    let right = any_perpendicular(&plane.normal);
+    let [x, y] = [right, plane.normal.cross(&right)].map(|axis| raster.project(mesh, &axis));
+    let picture = raster.draw(mesh, [&x, &y], merger.cancel)?;
+    Ok(picture.area() as f64 / (scale * scale))
 }
 
 /// What settles a tie, in this order.

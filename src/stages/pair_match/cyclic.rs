@@ -12,6 +12,14 @@ pub(super) fn position(k: usize, offset: usize, order: Order, n: usize) -> usize
     }
 }
 
+/// Shows `look` the corners of the second loop that belong to those of the first, one after the other.
+pub(super) fn from_offset<T>(corners: &[T], offset: usize, order: Order, look: impl FnMut(&T)) {
+    match order {
+        Order::Same => corners[offset..].iter().chain(&corners[..offset]).for_each(look),
+        Order::Reversed => corners[..=offset].iter().rev().chain(corners[offset + 1..].iter().rev()).for_each(look),
+    }
+}
+
 /// Corners of a closed loop and the distances between consecutive ones, measured once for all its pairs.
 pub(super) struct Loop<'a> {
     corners: &'a [Point],
@@ -186,6 +194,17 @@ mod tests {
         for other in &loops {
             let [first, other] = [&loops[0], other].map(|corners| Loop::new(corners));
             assert!(search.matches(&first, &other, Order::Same, &mut |_| panic!("found one")).is_err());
+        }
+    }
+
+    #[test]
+    fn corners_follow_each_other_from_the_offset_on() {
+        for order in [Order::Same, Order::Reversed] {
+            for offset in 0..4 {
+                let mut met = Vec::new();
+                from_offset(&[0, 1, 2, 3], offset, order, |&corner| met.push(corner));
+                assert_eq!(met, [0, 1, 2, 3].map(|k| position(k, offset, order, 4)));
+            }
         }
     }
 

@@ -154,7 +154,7 @@ impl Corners {
         match &pair.correspondence {
             Correspondence::Cyclic { offset, order } => {
                 self.from.extend_from_slice(a);
-                self.to.extend((0..a.len()).map(|k| b[cyclic::position(k, *offset as usize, *order, b.len())]));
+                cyclic::from_offset(b, *offset as usize, *order, |corner| self.to.push(*corner));
             }
             Correspondence::Listed { corners, .. } => {
                 self.from.extend(corners.iter().map(|&(i, _)| a[i as usize]));

@@ -7,7 +7,7 @@ use crate::brep::{Mesh, MeshFace};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
 
-use super::silhouette::Silhouette;
+use super::Silhouette;
 
 /// A square picture and where the model lies in it.
 #[derive(Clone, Copy, Debug)]

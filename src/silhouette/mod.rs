@@ -1,5 +1,7 @@
 //! Silhouettes: pictures of 1 bit to the pixel, their rows held in words.
 
+pub mod draw;
+
 use std::ops::Range;
 
 /// A square picture of bits; row 0 is the lowest, x grows with the bit's number.
@@ -94,7 +96,7 @@ impl Silhouette {
     }
 
     /// The pixels within `radius` of a covered one: a dilation by a disc.
-    pub(super) fn dilated(&self, radius: usize) -> Self {
+    pub(crate) fn dilated(&self, radius: usize) -> Self {
         let mut grown = Self::new(self.side);
         let r = radius as isize;
         for dy in -r..=r {
