@@ -3,6 +3,8 @@
 //! Most of a mesh lies behind what is drawn already, or before it. A face, and then a triangle, whose box of pixels is
 //! covered is therefore left out, and faces that take up much of the picture come first.
 
+use std::cmp::Reverse;
+
 use crate::brep::{Mesh, MeshFace};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
@@ -26,6 +28,8 @@ pub struct Coordinates {
     exact: Vec<f64>,
     /// The pixels that hold them.
     cells: Vec<u16>,
+    /// The first and the last pixel of each face.
+    faces: Vec<[u16; 2]>,
 }
 
 impl Raster {
@@ -34,23 +38,21 @@ impl Raster {
         let (middle, end) = (0.5 * self.side as f64, self.side as f64);
         let along = |p: &Point| (middle + self.scale * axis.dot(&(p - self.centre))).clamp(0.0, end);
         let exact: Vec<_> = mesh.points.iter().map(along).collect();
-        let cells = exact.iter().map(|&c| (c as u16).min(self.side as u16 - 1)).collect();
-        Coordinates { exact, cells }
+        let cells: Vec<_> = exact.iter().map(|&c| (c as u16).min(self.side as u16 - 1)).collect();
+        let points = |face: &MeshFace| face.points.start as usize..face.points.end as usize;
+        let faces = mesh.faces.iter().map(|face| bounds(&cells[points(face)])).collect();
+        Coordinates { exact, cells, faces }
     }
 
     /// Draws a mesh by the coordinates of its points: every pixel that a triangle touches, so that thin sheets seen
     /// edge-on do not vanish.
     pub fn draw(&self, mesh: &Mesh, [x, y]: [&Coordinates; 2], cancel: &Cancel) -> Result<Silhouette, Cancelled> {
-        let mut brush = Brush { picture: Silhouette::new(self.side), spans: vec![NOTHING; self.side] };
-        let boxed = |(number, face): (usize, &MeshFace)| {
-            let points = face.points.start as usize..face.points.end as usize;
-            let pixels = Pixels { x: bounds(&x.cells[points.clone()]), y: bounds(&y.cells[points]) };
-            (std::cmp::Reverse(pixels.area()), number, pixels)
-        };
-        let mut faces: Vec<_> = mesh.faces.iter().enumerate().map(boxed).collect();
-        faces.sort_unstable_by_key(|(area, number, _)| (*area, *number));
-        for (_, number, pixels) in faces {
-            if !brush.covers(&pixels) {
+        let mut brush = Brush { picture: Silhouette::new(self.side) };
+        let boxed = |number: usize| Pixels { x: x.faces[number], y: y.faces[number] };
+        let mut faces: Vec<_> = (0..mesh.faces.len()).map(|n| (Reverse(boxed(n).area()), n as u32)).collect();
+        faces.sort_unstable();
+        for number in faces.into_iter().map(|(_, number)| number as usize) {
+            if !brush.covers(&boxed(number)) {
                 let triangles = &mesh.faces[number].triangles;
                 let triangles = &mesh.triangles[triangles.start as usize..triangles.end as usize];
                 brush.face(triangles, [x, y], cancel)?;
@@ -88,11 +90,28 @@ struct Corner {
     row: u16,
 }
 
+/// The side of a triangle between two of its corners, the lower one first.
+struct Side {
+    from: Corner,
+    to: Corner,
+    slope: f64,
+}
+
+impl Side {
+    fn up(from: Corner, to: Corner) -> Self {
+        Self { from, to, slope: (to.x - from.x) / (to.y - from.y) }
+    }
+
+    /// Where it leaves a row upward, or ends in it.
+    #[inline]
+    fn leaves(&self, row: u16) -> f64 {
+        if row < self.to.row { self.from.x + self.slope * (f64::from(row + 1) - self.from.y) } else { self.to.x }
+    }
+}
+
 /// A picture being drawn.
 struct Brush {
     picture: Silhouette,
-    /// Scratch, one for each row: what a triangle covers there. Empty between two triangles.
-    spans: Vec<[f64; 2]>,
 }
 
 impl Brush {
@@ -118,42 +137,44 @@ impl Brush {
     }
 
     /// Covers every pixel that the triangle touches.
-    fn touch(&mut self, corners: [Corner; 3], pixels: &Pixels) {
-        let ([first, last], [low, high]) = (pixels.x.map(usize::from), pixels.y.map(usize::from));
+    fn touch(&mut self, mut corners: [Corner; 3], pixels: &Pixels) {
+        let [low, high] = pixels.y;
         if low == high {
-            return self.picture.fill(low, first, last + 1);
+            return self.picture.fill(low.into(), pixels.x[0].into(), usize::from(pixels.x[1]) + 1);
         }
+        corners.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
         let [a, b, c] = corners;
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            self.widen(from, to);
-        }
-        for (y, span) in (low..).zip(&mut self.spans[low..=high]) {
-            let [first, last] = std::mem::replace(span, NOTHING).map(|c| (c as usize).min(self.picture.side() - 1));
-            self.picture.fill(y, first, last + 1);
-        }
-    }
-
-    /// Widens the spans of the rows that a segment passes to what it covers there.
-    fn widen(&mut self, a: Corner, b: Corner) {
-        let (a, b) = if a.y <= b.y { (a, b) } else { (b, a) };
-        let (low, high) = (usize::from(a.row), usize::from(b.row));
-        let slope = (b.x - a.x) / (b.y - a.y);
-        let mut x = a.x;
-        for (y, span) in (low..).zip(&mut self.spans[low..=high]) {
-            let next = if y == high { b.x } else { a.x + slope * ((y + 1) as f64 - a.y) };
-            *span = widened_to(widened_to(*span, x), next);
-            x = next;
+        let (long, lower, upper) = (Side::up(a, c), Side::up(a, b), Side::up(b, c));
+        let side = self.picture.side() as u32;
+        let mut entered = [a.x; 2];
+        for row in low..=high {
+            let left = ordered(long.leaves(row), if row < b.row { lower.leaves(row) } else { upper.leaves(row) });
+            let mut span = [less(entered[0], left[0]), more(entered[1], left[1])];
+            if row == b.row {
+                span = [less(span[0], b.x), more(span[1], b.x)];
+            }
+            let [first, last] = span.map(|x| (x as u32).min(side - 1) as usize);
+            self.picture.fill(row.into(), first, last + 1);
+            entered = left;
         }
     }
 }
 
-/// A span that covers nothing.
-const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
-
-/// The span that also covers `x`. Coordinates are numbers: comparing is all there is to it.
+/// The lesser of two coordinates. They are numbers: comparing is all there is to it.
 #[inline]
-fn widened_to([first, last]: [f64; 2], x: f64) -> [f64; 2] {
-    [if x < first { x } else { first }, if x > last { x } else { last }]
+fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two coordinates.
+#[inline]
+fn more(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline]
+fn ordered(a: f64, b: f64) -> [f64; 2] {
+    [less(a, b), more(a, b)]
 }
 
 #[cfg(test)]

@@ -37,7 +37,9 @@ impl Silhouette {
 
     /// Covered pixels.
     pub fn area(&self) -> usize {
-        self.bits.iter().map(|w| w.count_ones() as usize).sum()
+        let mixed = |word: &&u64| !matches!(**word, 0 | u64::MAX);
+        let full = self.bits.iter().filter(|word| **word == u64::MAX).count();
+        64 * full + self.bits.iter().filter(mixed).map(|word| word.count_ones() as usize).sum::<usize>()
     }
 
     /// Centroid of the covered pixels (pixel centres are at halves); `None` for an empty picture.
@@ -45,8 +47,10 @@ impl Silhouette {
         let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
         for row in 0..self.side {
             for (number, &word) in self.row(row).iter().enumerate().filter(|(_, word)| **word != 0) {
-                let ones = f64::from(word.count_ones());
-                x += ones * ((64 * number) as f64 + 0.5) + f64::from(bit_positions(word));
+                let (ones, positions) =
+                    if word == u64::MAX { (64, 2016) } else { (word.count_ones(), bit_positions(word)) };
+                let ones = f64::from(ones);
+                x += ones * ((64 * number) as f64 + 0.5) + f64::from(positions);
                 y += ones * (row as f64 + 0.5);
                 count += ones;
             }

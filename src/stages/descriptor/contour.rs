@@ -18,18 +18,20 @@ const STEPS: [[isize; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 const SMOOTHED: usize = 3;
 
 impl Contour {
-    /// The outer contour that encloses the largest area; `None` for an empty picture.
+    /// The outer contour that encloses the largest area, and whether it is the only one; `None` for an empty picture.
     ///
     /// Pixels that touch at a corner are connected.
-    pub fn largest(picture: &Silhouette) -> Option<Self> {
+    pub fn largest(picture: &Silhouette) -> Option<(Self, bool)> {
         let mut best: Option<(i64, Vec<[isize; 2]>)> = None;
+        let mut outer = 0;
         for path in boundaries(picture) {
             let area = doubled_area(&path);
+            outer += usize::from(area > 0);
             if best.as_ref().is_none_or(|(most, _)| area > *most) {
                 best = Some((area, path));
             }
         }
-        best.map(|(_, path)| Self { points: path.iter().map(|p| p.map(|c| c as f64)).collect() })
+        best.map(|(_, path)| (Self { points: path.iter().map(|p| p.map(|c| c as f64)).collect() }, outer == 1))
     }
 
     /// Covered pixels of a picture inside this contour (which runs along the boundaries of pixels).
@@ -45,13 +47,12 @@ impl Contour {
 
     /// The contour with its stairs smoothed to lines.
     pub fn smoothed(&self) -> Self {
+        const WIDTH: usize = 2 * SMOOTHED + 1;
         let n = self.points.len();
-        let width = (2 * SMOOTHED + 1) as f64;
-        let mean = |i: usize| {
-            let near = (0..=2 * SMOOTHED).map(|k| self.points[(i + k + n - SMOOTHED % n) % n]);
-            near.fold([0.0; 2], |sum, p| [sum[0] + p[0] / width, sum[1] + p[1] / width])
-        };
-        Self { points: (0..n).map(mean).collect() }
+        let shares = self.points.iter().cycle().skip(n - SMOOTHED % n).take(n + WIDTH - 1);
+        let shares: Vec<_> = shares.map(|p| p.map(|c| c / WIDTH as f64)).collect();
+        let mean = |near: &[[f64; 2]]| near.iter().fold([0.0; 2], |sum, p| [sum[0] + p[0], sum[1] + p[1]]);
+        Self { points: shares.windows(WIDTH).map(mean).collect() }
     }
 }
 
@@ -143,7 +144,7 @@ mod tests {
     #[test]
     fn a_pixel_has_four_sides() {
         let picture = Silhouette::from_text("... .#. ...");
-        let contour = Contour::largest(&picture).unwrap();
+        let contour = Contour::largest(&picture).unwrap().0;
         assert_eq!(contour.points, vec![[1.0, 2.0], [1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]);
         assert_eq!(contour.enclosed(&picture), 1);
     }
@@ -161,7 +162,7 @@ mod tests {
              .#######.
              ......... ",
         );
-        let contour = Contour::largest(&picture).unwrap();
+        let contour = Contour::largest(&picture).unwrap().0;
         assert_eq!(contour.points.len(), 28);
         assert_eq!(contour.enclosed(&picture), picture.area());
     }
@@ -169,7 +170,7 @@ mod tests {
     #[test]
     fn pixels_that_touch_at_a_corner_share_a_contour() {
         let picture = Silhouette::from_text(".... .#.. ..#. ....");
-        let contour = Contour::largest(&picture).unwrap();
+        let contour = Contour::largest(&picture).unwrap().0;
         assert_eq!(contour.points.len(), 8);
         assert_eq!(contour.enclosed(&picture), 2);
     }
@@ -177,7 +178,7 @@ mod tests {
     #[test]
     fn the_larger_of_two_parts_is_taken() {
         let picture = Silhouette::from_text("##..... ##..... ....... ....### ....### ....### .......");
-        let contour = Contour::largest(&picture).unwrap();
+        let contour = Contour::largest(&picture).unwrap().0;
         assert_eq!((contour.enclosed(&picture), picture.area()), (9, 13));
     }
 
@@ -190,7 +191,7 @@ mod tests {
     fn smoothing_makes_the_stairs_of_a_diagonal_a_line() {
         let mut picture = Silhouette::new(200);
         (20..180).for_each(|y| picture.fill(y, y.abs_diff(100) + 10, 190 - y.abs_diff(100)));
-        let smooth = Contour::largest(&picture).unwrap().smoothed();
+        let smooth = Contour::largest(&picture).unwrap().0.smoothed();
         let next = smooth.points.iter().cycle().skip(1);
         let length: f64 = smooth.points.iter().zip(next).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1])).sum();
         // A hexagon: four slanted sides of 80 rows, top and bottom of 20 pixels.

@@ -1,5 +1,7 @@
 //! Centroid distance signatures and their Fourier descriptors (the paper's section VI; Zhang and Lu 2002).
 
+use std::cell::RefCell;
+
 use realfft::RealFftPlanner;
 
 use super::HARMONICS;
@@ -25,6 +27,12 @@ struct Place {
 pub struct Path<'a> {
     points: &'a [[f64; 2]],
     lengths: Vec<f64>,
+    length: f64,
+}
+
+thread_local! {
+    /// Holds the transforms of the lengths asked for so far.
+    static PLANNER: RefCell<RealFftPlanner<f64>> = RefCell::new(RealFftPlanner::new());
 }
 
 impl<'a> Path<'a> {
@@ -32,7 +40,8 @@ impl<'a> Path<'a> {
     pub fn new(contour: &'a Contour) -> Self {
         let points = contour.points.as_slice();
         let ends = points.iter().cycle().skip(1);
-        Self { points, lengths: points.iter().zip(ends).map(|(a, b)| distance(*a, *b)).collect() }
+        let lengths: Vec<_> = points.iter().zip(ends).map(|(a, b)| distance(*a, *b)).collect();
+        Self { points, length: lengths.iter().sum(), lengths }
     }
 
     /// `count` points equally spaced by arc length, counter-clockwise, from where the half axis from `centre` meets the
@@ -40,17 +49,18 @@ impl<'a> Path<'a> {
     pub fn resampled(&self, centre: [f64; 2], start: Start, count: usize) -> Vec<[f64; 2]> {
         let (points, n) = (self.points, self.points.len());
         let place = last_crossing(points, centre, start).unwrap_or_else(|| nearest_in_direction(points, centre, start));
-        let length = |i: usize| self.lengths[i % n];
-        let step = self.lengths.iter().sum::<f64>() / count as f64;
-        let (mut side, mut along) = (place.side, place.share * length(place.side));
+        let next = |side: usize| if side + 1 < n { side + 1 } else { 0 };
+        let step = self.length / count as f64;
+        let (mut side, mut along) = (place.side, place.share * self.lengths[place.side]);
+        let mut passed = 0;
         let mut resampled = Vec::with_capacity(count);
         for _ in 0..count {
-            while along > length(side) && side < place.side + 2 * n {
-                along -= length(side);
-                side += 1;
+            while along > self.lengths[side] && passed < 2 * n {
+                along -= self.lengths[side];
+                (side, passed) = (next(side), passed + 1);
             }
-            let share = if length(side) > 0.0 { along / length(side) } else { 0.0 };
-            resampled.push(between(points[side % n], points[(side + 1) % n], share));
+            let share = if self.lengths[side] > 0.0 { along / self.lengths[side] } else { 0.0 };
+            resampled.push(between(points[side], points[next(side)], share));
             along += step;
         }
         resampled
@@ -64,7 +74,7 @@ pub fn centroid_distances(points: &[[f64; 2]], centre: [f64; 2]) -> Vec<f64> {
 
 /// F_k / |F_0| for k = 1..=[`HARMONICS`] of a real signature, as (re, im); `None` where F_0 vanishes.
 pub fn coefficients(signature: &[f64]) -> Option<[[f32; 2]; HARMONICS]> {
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(signature.len());
+    let transform = PLANNER.with_borrow_mut(|planner| planner.plan_fft_forward(signature.len()));
     let mut spectrum = transform.make_output_vec();
     transform.process(&mut signature.to_vec(), &mut spectrum).ok()?;
     let scale = spectrum.first()?.norm();
@@ -81,10 +91,10 @@ pub fn magnitudes(coefficients: &[[f32; 2]; HARMONICS]) -> [f32; HARMONICS] {
 
 /// Where the half axis meets the polygon farthest from `centre`.
 fn last_crossing(points: &[[f64; 2]], centre: [f64; 2], start: Start) -> Option<Place> {
-    let n = points.len();
     let mut best: Option<(f64, Place)> = None;
-    for side in 0..n {
-        let (a, b) = (seen(points[side], centre, start), seen(points[(side + 1) % n], centre, start));
+    let ends = points.iter().cycle().skip(1);
+    for (side, (a, b)) in points.iter().zip(ends).enumerate() {
+        let (a, b) = (seen(*a, centre, start), seen(*b, centre, start));
         if (a[1] < 0.0) == (b[1] < 0.0) {
             continue;
         }

@@ -162,10 +162,12 @@ fn describe(picture: &Silhouette, options: &Options) -> Option<ViewDescriptor> {
 /// The outer contour that encloses nearly the whole silhouette, if need be after closing gaps.
 fn unbroken_contour(picture: &Silhouette, options: &Options) -> Option<Contour> {
     let wanted = options.enclosed * picture.area() as f64;
-    let encloses = |contour: &Contour| contour.enclosed(picture) as f64 >= wanted;
+    // A lone outer contour encloses all.
+    let encloses = |(contour, alone): &(Contour, bool)| *alone || contour.enclosed(picture) as f64 >= wanted;
     Contour::largest(picture)
         .filter(encloses)
         .or_else(|| Contour::largest(&picture.closed(options.closing_radius())).filter(encloses))
+        .map(|(contour, _)| contour)
 }
 
 #[cfg(test)]
