@@ -30,18 +30,40 @@ pub struct Corner {
     pub across: f64,
 }
 
-/// Samples of depth, colour and face.
+/// Samples of depth, of what is seen there, and, once the surfaces are shaded, of colour.
 pub struct Canvas {
     camera: Camera,
     side: usize,
     samples: usize,
     depths: Vec<f32>,
+    /// Which of the surfaces.
+    seen: Vec<u32>,
+    surfaces: Vec<Surface>,
     colours: Vec<Rgb>,
-    faces: Vec<u32>,
 }
 
-/// The face of samples that no face covers.
-const NO_FACE: u32 = u32::MAX;
+/// What a triangle looks like.
+struct Surface {
+    face: u32,
+    paint: Paint,
+    light: Ramp,
+    across: Ramp,
+}
+
+impl Surface {
+    fn colour(&self, x: usize, y: usize) -> Rgb {
+        let colour = match self.paint {
+            Paint::Split(_, negative) if self.across.at(x, y) < 0.0 => negative,
+            Paint::Plain(colour) | Paint::Split(colour, _) => colour,
+        };
+        let light = self.light.at(x, y).clamp(0.0, 1.0);
+        colour.map(|c| (f64::from(c) * light) as u8)
+    }
+}
+
+/// The surface of samples where none is seen.
+const NOTHING: u32 = u32::MAX;
+const WHITE: Rgb = [255; 3];
 /// How dark the outlines of faces are.
 const OUTLINE: f32 = 0.45;
 /// How opaque planes are.
@@ -51,8 +73,8 @@ impl Canvas {
     /// A white picture of `side` by `side` pixels with `samples` by `samples` samples each.
     pub fn new(camera: Camera, side: usize, samples: usize) -> Self {
         let count = (side * samples).pow(2);
-        let (depths, colours) = (vec![f32::NEG_INFINITY; count], vec![[255; 3]; count]);
-        Self { camera, side, samples, depths, colours, faces: vec![NO_FACE; count] }
+        let (depths, seen) = (vec![f32::NEG_INFINITY; count], vec![NOTHING; count]);
+        Self { camera, side, samples, depths, seen, surfaces: Vec::new(), colours: Vec::new() }
     }
 
     /// Where the picture is taken from.
@@ -60,28 +82,44 @@ impl Canvas {
         &self.camera
     }
 
-    /// Draws a triangle where nothing nearer is drawn yet.
-    pub fn triangle(&mut self, corners: &[Corner; 3], paint: Paint, face: u32) {
+    /// Places a triangle where nothing nearer is placed yet.
+    pub fn triangle(&mut self, corners: [&Corner; 3], paint: Paint, face: u32) {
         let flat = corners.map(|c| [c.at[0], c.at[1]]);
         let width = self.side * self.samples;
         let Some(triangle) = Triangle::new(flat, width) else { return };
-        let ramp = |value: fn(&Corner) -> f64| Ramp::new(&flat, [&corners[0], &corners[1], &corners[2]].map(value));
-        let (depths, lights, across) = (ramp(|c| c.at[2]), ramp(|c| c.light), ramp(|c| c.across));
+        let ramp = |value: fn(&Corner) -> f64| Ramp::new(&flat, corners.map(value));
+        let depths = ramp(|c| c.at[2]);
+        let surface = self.surfaces.len() as u32;
+        let mut shows = false;
         for (y, span) in triangle.spans() {
-            for x in span {
-                let (at, depth) = (y * width + x, depths.at(x, y) as f32);
-                if depth > self.depths[at] {
-                    let colour = match paint {
-                        Paint::Split(_, negative) if across.at(x, y) < 0.0 => negative,
-                        Paint::Plain(colour) | Paint::Split(colour, _) => colour,
-                    };
-                    let light = lights.at(x, y).clamp(0.0, 1.0);
-                    self.depths[at] = depth;
-                    self.faces[at] = face;
-                    self.colours[at] = colour.map(|c| (f64::from(c) * light) as u8);
+            let row = y * width + span.start..y * width + span.end.max(span.start);
+            for ((x, nearest), seen) in span.zip(&mut self.depths[row.clone()]).zip(&mut self.seen[row]) {
+                let depth = depths.at(x, y) as f32;
+                if depth > *nearest {
+                    (*nearest, *seen, shows) = (depth, surface, true);
                 }
             }
         }
+        if shows {
+            self.surfaces.push(Surface { face, paint, light: ramp(|c| c.light), across: ramp(|c| c.across) });
+        }
+    }
+
+    /// Gives the samples their colours: those of the surfaces that are seen, darker where one face borders on another
+    /// or on the background.
+    pub fn shade(&mut self) {
+        let width = self.side * self.samples;
+        let face = |surface: u32| self.surfaces.get(surface as usize).map(|s| s.face);
+        let colour = |(x, y): (usize, usize)| {
+            let at = y * width + x;
+            let seen = self.seen[at];
+            let colour = self.surfaces.get(seen as usize).map_or(WHITE, |surface| surface.colour(x, y));
+            let right = self.seen[if x + 1 < width { at + 1 } else { at }];
+            let below = self.seen[if y + 1 < width { at + width } else { at }];
+            let borders = |other: u32| other != seen && face(other) != face(seen);
+            if borders(right) || borders(below) { blend(colour, [0; 3], OUTLINE) } else { colour }
+        };
+        self.colours = (0..width).flat_map(|y| (0..width).map(move |x| (x, y))).map(colour).collect();
     }
 
     /// Lays a translucent square over what lies behind it.
@@ -118,23 +156,9 @@ impl Canvas {
         [x, y].map(|c| (c / self.samples as f64) as f32)
     }
 
-    /// Darkens the samples where one face borders on another or on the background.
-    pub fn outline(&mut self) {
-        let width = self.side * self.samples;
-        for y in 0..width {
-            let (row, below) = (y * width, (y + 1).min(width - 1) * width);
-            for x in 0..width {
-                let face = self.faces[row + x];
-                if face != self.faces[row + (x + 1).min(width - 1)] || face != self.faces[below + x] {
-                    self.colours[row + x] = blend(self.colours[row + x], [0; 3], OUTLINE);
-                }
-            }
-        }
-    }
-
     /// The colours of the pixels, row by row from the top.
     pub fn pixels(&self) -> impl Iterator<Item = Rgb> {
-        (0..self.side * self.side).map(|i| self.mean(i % self.side, i / self.side))
+        (0..self.side).flat_map(move |y| (0..self.side).map(move |x| self.mean(x, y)))
     }
 
     /// The picture: the mean of the samples of each pixel.

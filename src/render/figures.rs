@@ -15,7 +15,7 @@ use crate::stages::projection_sweep::CanonicalFrame;
 
 use super::camera::extent;
 use super::text;
-use super::{Camera, Canvas, GREY, Paint, Rgb, Scene, area_curve, png, shaded};
+use super::{Camera, Canvas, GREY, Paint, Rgb, SAMPLES, Scene, area_curve, png, shaded};
 
 /// Pixels on a side of a figure.
 const SIDE: usize = 800;
@@ -79,7 +79,7 @@ pub fn symmetry(parsed: &Parsed, symmetries: &Symmetries, frame: &Frame) -> Pixm
     let also = sheet.map(Vec::from).unwrap_or_default();
     let scene =
         Scene { mesh: &parsed.mesh, measures: &parsed.measures, frame, plane, also: &also, cancel: &Cancel::new() };
-    let mut canvas = shaded(&scene, &|id| paints[id.index()], SIDE);
+    let mut canvas = shaded(&scene, &|id| paints[id.index()], SIDE, SAMPLES);
     if let Some(corners) = sheet {
         lay(&mut canvas, corners, SLATE);
     }
@@ -106,7 +106,7 @@ pub fn frame(parsed: &Parsed, frame: &Frame) -> Pixmap {
         also: &also,
         cancel: &Cancel::new(),
     };
-    let mut canvas = shaded(&scene, &|_| Paint::Plain(GREY), SIDE);
+    let mut canvas = shaded(&scene, &|_| Paint::Plain(GREY), SIDE, SAMPLES);
     for (corners, colour) in sheets.into_iter().zip(PLANES) {
         lay(&mut canvas, corners, colour);
     }

@@ -27,6 +27,8 @@ pub const THUMBNAIL: usize = 96;
 
 /// Samples to a pixel, along each side: 3 is the least that shows no stairs.
 const SAMPLES: usize = 3;
+/// Thumbnails are looked at in passing.
+const THUMBNAIL_SAMPLES: usize = 2;
 /// The share of light that reaches faces turned away from the lamp.
 const AMBIENT: f64 = 0.5;
 /// Plain surfaces.
@@ -49,26 +51,32 @@ pub struct Scene<'a> {
     pub cancel: &'a Cancel,
 }
 
-/// Draws the faces, each in its paint, on white, with their outlines; `side` pixels wide and high.
+/// Draws the faces, each in its paint, on white, with their outlines; `side` pixels wide and high, of `samples` by
+/// `samples` samples each.
 ///
 /// The picture is not yet resolved, so that planes may be laid over it.
-pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize) -> Canvas {
-    let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * SAMPLES).including(scene.also);
-    let mut canvas = Canvas::new(camera, side, SAMPLES);
-    let mut corners = Vec::new();
-    for (number, face) in scene.mesh.faces.iter().enumerate() {
-        let id = PlacedFaceId(number as u32);
-        let paint = paint(id);
-        seen(scene, face, canvas.camera(), &mut corners);
-        for triangle in &scene.mesh.triangles[scene.mesh.triangles_of(id)] {
-            if scene.cancel.is_cancelled() {
-                return canvas;
-            }
-            canvas.triangle(&triangle.map(|i| corners[(i - face.points.start) as usize]), paint, number as u32);
-        }
+pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize, samples: usize) -> Canvas {
+    let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * samples).including(scene.also);
+    let mut canvas = Canvas::new(camera, side, samples);
+    let corners = corners(scene, &camera);
+    let of_face = |id| scene.mesh.triangles[scene.mesh.triangles_of(id)].iter().map(move |triangle| (id, triangle));
+    let triangles = nearest_first(scene.mesh, &corners).flat_map(of_face);
+    for (id, triangle) in triangles.take_while(|_| !scene.cancel.is_cancelled()) {
+        canvas.triangle(triangle.map(|i| &corners[i as usize]), paint(id), id.0);
     }
-    canvas.outline();
+    canvas.shade();
     canvas
+}
+
+/// The faces in the order of their nearest points: what comes late is mostly hidden.
+fn nearest_first(mesh: &Mesh, corners: &[Corner]) -> impl Iterator<Item = PlacedFaceId> {
+    let nearest = |face: &MeshFace| {
+        let corners = &corners[face.points.start as usize..face.points.end as usize];
+        corners.iter().map(|c| c.at[2]).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let mut faces: Vec<_> = mesh.faces.iter().map(nearest).zip(0..).collect();
+    faces.sort_unstable_by(|a: &(f64, u32), b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    faces.into_iter().map(|(_, number)| PlacedFaceId(number))
 }
 
 /// A grey picture of the model for stores and galleries: [`THUMBNAIL`]^2 bytes, row by row from the top, 255 is white.
@@ -77,7 +85,7 @@ pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize)
 /// When cancelled.
 pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame, cancel: &Cancel) -> Result<Vec<u8>, Cancelled> {
     let scene = Scene { mesh, measures, frame, plane: None, also: &[], cancel };
-    let canvas = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL);
+    let canvas = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL, THUMBNAIL_SAMPLES);
     cancel.check()?;
     Ok(canvas.pixels().map(luminance).collect())
 }
@@ -91,15 +99,13 @@ fn luminance([r, g, b]: Rgb) -> u8 {
     ((u32::from(r) * 299 + u32::from(g) * 587 + u32::from(b) * 114 + 500) / 1000) as u8
 }
 
-/// The points of a face as the camera sees them, into `corners`. Their light follows Lambert's law on both sides, with
-/// normals averaged over the triangles that meet there (points belong to one face, so that edges stay sharp).
-fn seen(scene: &Scene, face: &MeshFace, camera: &Camera, corners: &mut Vec<Corner>) {
-    let points = &scene.mesh.points[face.points.start as usize..face.points.end as usize];
-    let mut normals = vec![Vector::zeros(); points.len()];
-    for t in face.triangles.clone() {
-        let normal = scene.mesh.doubled_normal(t as usize);
-        let corners = scene.mesh.triangles[t as usize].map(|i| (i - face.points.start) as usize);
-        corners.iter().for_each(|&i| normals[i] += normal);
+/// The points of the mesh as the camera sees them. Their light follows Lambert's law on both sides, with normals averaged
+/// over the triangles that meet there (points belong to one face, so that edges stay sharp).
+fn corners(scene: &Scene, camera: &Camera) -> Vec<Corner> {
+    let mut normals = vec![Vector::zeros(); scene.mesh.points.len()];
+    for (t, corners) in scene.mesh.triangles.iter().enumerate() {
+        let normal = scene.mesh.doubled_normal(t);
+        corners.iter().for_each(|&i| normals[i as usize] += normal);
     }
     let lamp = camera.lamp();
     let light = |normal: &Vector| {
@@ -107,12 +113,8 @@ fn seen(scene: &Scene, face: &MeshFace, camera: &Camera, corners: &mut Vec<Corne
         if length > 0.0 { AMBIENT + (1.0 - AMBIENT) * lamp.dot(normal).abs() / length } else { AMBIENT }
     };
     let across = |p: &Point| scene.plane.map_or(0.0, |plane| plane.signed_distance(p));
-    corners.clear();
-    corners.extend(points.iter().zip(&normals).map(|(p, normal)| Corner {
-        at: camera.project(p),
-        light: light(normal),
-        across: across(p),
-    }));
+    let corner = |(p, normal)| Corner { at: camera.project(p), light: light(normal), across: across(p) };
+    scene.mesh.points.iter().zip(&normals).map(corner).collect()
 }
 
 #[cfg(test)]
@@ -149,7 +151,7 @@ mod tests {
         let scene =
             Scene { mesh: &mesh, measures: &measures, frame: &frame, plane: None, also: &[], cancel: &Cancel::new() };
         let paint = |id: PlacedFaceId| Paint::Plain(if id.0 == 0 { [200, 0, 0] } else { [0, 0, 200] });
-        let canvas = shaded(&scene, &paint, 64);
+        let canvas = shaded(&scene, &paint, 64, SAMPLES);
         let [x, y, _] =
             canvas.camera().project(&Point::new(1.0, 1.0, if canvas.camera().lamp().z > 0.0 { 1.0 } else { 0.0 }));
         let picture = canvas.resolved();
