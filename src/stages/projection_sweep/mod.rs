@@ -18,6 +18,7 @@ mod pixels;
 mod reference;
 mod shadow;
 mod slices;
+mod widths;
 mod wire;
 
 use crate::alignment::npca;

@@ -2,7 +2,7 @@
 //!
 //! A triangle casts an interval from every slice that it crosses; what a connected piece casts is the union of those.
 
-use crate::brep::Mesh;
+use crate::brep::{Mesh, MeshFace};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::cells::first_centre;
 use crate::geometry::{Point, Vector};
@@ -30,9 +30,12 @@ pub fn area(
     let level = |height: f64| first_centre((height - low) / thickness, count);
     let corners = corners.into_iter().map(|(height, x)| Corner { height, x, level: level(height) as u32 }).collect();
     let mut cut = Cut { corners, low, thickness, shadows: vec![Union::default(); count] };
-    for some in mesh.triangles.chunks(4096) {
-        cancel.check()?;
-        some.iter().for_each(|triangle| cut.cast(triangle));
+    for face in cut.widest_first(mesh) {
+        let triangles = &mesh.triangles[face.triangles.start as usize..face.triangles.end as usize];
+        for some in triangles.chunks(4096) {
+            cancel.check()?;
+            some.iter().for_each(|triangle| cut.cast(triangle));
+        }
     }
     Ok(thickness * cut.shadows.iter_mut().map(Union::length).sum::<f64>())
 }
@@ -54,6 +57,18 @@ struct Cut {
 }
 
 impl Cut {
+    /// The faces, those first that cast the widest shadows: most of what the others cast lies within these.
+    fn widest_first<'a>(&self, mesh: &'a Mesh) -> Vec<&'a MeshFace> {
+        let width = |face: &MeshFace| {
+            let corners = &self.corners[face.points.start as usize..face.points.end as usize];
+            let ends = corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c.x), h.max(c.x)]);
+            ends[1] - ends[0]
+        };
+        let mut faces: Vec<_> = mesh.faces.iter().map(|face| (width(face), face)).collect();
+        faces.sort_by(|a, b| b.0.total_cmp(&a.0));
+        faces.into_iter().map(|(_, face)| face).collect()
+    }
+
     /// Adds what a triangle casts to the shadows of the slices that it crosses.
     fn cast(&mut self, triangle: &[u32; 3]) {
         let corners = triangle.map(|i| self.corners[i as usize]);

@@ -16,6 +16,7 @@ use crate::stages::parse::Parsed;
 use super::cover::uncovered;
 use super::curve::Shadows;
 use super::reference::Turntable;
+use super::widths::Widths;
 use super::wire::Wire;
 
 /// Edge crossings held at a time by one worker: bounds the memory at some 100 MB.
@@ -31,6 +32,9 @@ pub(super) type Flat = [f64; 2];
 /// The convex hulls of the pieces of every slice.
 pub struct Slices {
     thickness: f64,
+    /// Of the slices that are one piece.
+    widths: Widths,
+    /// The slices of several pieces.
     slices: Vec<Slice>,
     /// The largest coordinate in a slice, mm.
     reach: f64,
@@ -66,9 +70,11 @@ impl Slices {
         Self::cut(&parsed.mesh, &Turntable::about(&parsed.measures, axis, start), count, cancel)
     }
 
-    fn new(thickness: f64, slices: Vec<Slice>) -> Self {
+    fn new(thickness: f64, mut slices: Vec<Slice>) -> Self {
+        let widths = Widths::of(slices.iter().filter(|slice| slice.hulls.len() == 1).map(|slice| &slice.points[..]));
+        slices.retain(|slice| slice.hulls.len() > 1);
         let coordinates = slices.iter().flat_map(|slice| slice.points.as_flattened());
-        Self { reach: coordinates.fold(0.0, |most, c| most.max(c.abs())), thickness, slices, stood: None }
+        Self { reach: coordinates.fold(0.0, |most, c| most.max(c.abs())), thickness, widths, slices, stood: None }
     }
 
     /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
@@ -110,7 +116,7 @@ impl Shadows for Slices {
         }
         let noise = NOISE * self.reach;
         let directions: Vec<Flat> = angles.iter().map(|&a| across(a)).collect();
-        let mut areas = vec![0.0; angles.len()];
+        let mut areas: Vec<_> = directions.iter().map(|&d| self.thickness * self.widths.along(d)).collect();
         let mut walkers = Vec::new();
         for slice in &self.slices {
             walkers.clear();
@@ -220,9 +226,6 @@ impl Walker {
 /// Length of the union of the hulls' intervals in a direction.
 fn shadow_length(points: &[Flat], walkers: &mut [Walker], direction: Flat, noise: f64) -> f64 {
     walkers.iter_mut().for_each(|w| w.turn(points, direction, noise));
-    if let [alone] = walkers {
-        return alone.high - alone.low;
-    }
     walkers.sort_unstable_by(|a, b| a.low.total_cmp(&b.low));
     let (mut length, mut covered) = (0.0, f64::NEG_INFINITY);
     for w in walkers.iter() {
