@@ -1,6 +1,9 @@
 //! Sets of directions, coarse: 54 cells of the sphere, one bit each, so that what faces the wrong way is passed over
 //! without a look.
 
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
 use super::Vector;
 
 /// The cells on a side of the cube are parted here, at 15 degrees from the middle: directions along the axes, by far
@@ -40,15 +43,12 @@ pub struct Neighbours([Sides; CELLS]);
 impl Neighbours {
     /// Of directions that form an angle of at least this cosine; with `both`, of their opposites too.
     pub fn within(cosine: f64, both: bool) -> Self {
-        let angle = cosine.clamp(-1.0, 1.0).acos();
-        let cones: [_; CELLS] = std::array::from_fn(cone);
-        let near = |(a, r): &(Vector, f64), (b, s): &(Vector, f64)| {
-            let apart = a.dot(b).clamp(-1.0, 1.0).acos();
-            let apart = if both { apart.min(std::f64::consts::PI - apart) } else { apart };
-            apart <= angle + r + s + 1e-6
+        let angle = cosine.clamp(-1.0, 1.0).acos() + 1e-6;
+        let near = |i: usize, j: usize| {
+            let Gap { same, opposite } = GAPS[i][j];
+            same <= angle || (both && opposite <= angle)
         };
-        let set = |i: usize| (0..CELLS).filter(|&j| near(&cones[i], &cones[j])).fold(0, |set, j| set | 1 << j);
-        Self(std::array::from_fn(set))
+        Self(std::array::from_fn(|i| (0..CELLS).filter(|&j| near(i, j)).fold(0, |set, j| set | 1 << j)))
     }
 
     /// A set that holds all directions within the angle of this one, and more.
@@ -56,6 +56,24 @@ impl Neighbours {
         self.0[cell(direction)]
     }
 }
+
+/// Angles between the nearest directions of two cells, and of one and the opposite of the other; below 0 where they may
+/// be equal.
+#[derive(Clone, Copy)]
+struct Gap {
+    same: f64,
+    opposite: f64,
+}
+
+/// Those of all cells.
+static GAPS: LazyLock<[[Gap; CELLS]; CELLS]> = LazyLock::new(|| {
+    let cones: [_; CELLS] = std::array::from_fn(cone);
+    let gap = |(a, r): &(Vector, f64), (b, s): &(Vector, f64)| {
+        let apart = a.dot(b).clamp(-1.0, 1.0).acos();
+        Gap { same: apart - r - s, opposite: PI - apart - r - s }
+    };
+    std::array::from_fn(|i| std::array::from_fn(|j| gap(&cones[i], &cones[j])))
+});
 
 /// The middle of a cell and the angle from there to its farthest corner.
 fn cone(cell: usize) -> (Vector, f64) {

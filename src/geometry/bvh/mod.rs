@@ -7,6 +7,8 @@
 mod build;
 mod triangle;
 
+use arrayvec::ArrayVec;
+
 use super::sides::{self, Sides};
 use super::{Aabb, Point, Vector};
 use build::{Bounds, Item, build};
@@ -240,11 +242,9 @@ impl Bvh {
     fn visit(&self, around: &Around, mut limit: f64, mut look: impl FnMut(u32, &Triangle, f64) -> f64) {
         let p = self.local(around.point);
         let mut reach = self.reach(around, limit);
-        let mut waiting = [(Child::default(), 0.0f32); WAITING];
-        let mut count = usize::from(!self.nodes.is_empty());
-        while count > 0 {
-            count -= 1;
-            let (Child { first, count: triangles }, squared) = waiting[count];
+        let mut waiting = ArrayVec::<(Child, f32), WAITING>::new();
+        waiting.extend((!self.nodes.is_empty()).then_some((Child::default(), 0.0)));
+        while let Some((Child { first, count: triangles }, squared)) = waiting.pop() {
             if squared > reach * reach {
                 continue;
             }
@@ -264,19 +264,18 @@ impl Bvh {
                 continue;
             }
             let node = &self.nodes[first as usize];
-            let (distances, limit, base) = (node.squared_distances(&p), reach * reach, count);
+            let (distances, limit, base) = (node.squared_distances(&p), reach * reach, waiting.len());
             for (i, &squared) in distances.iter().enumerate() {
                 if squared > limit || node.sides[i] & around.sides == 0 {
                     continue;
                 }
+                waiting.push((node.children[i], squared));
                 // Kept in order, the nearest last.
-                let mut at = count;
+                let mut at = waiting.len() - 1;
                 while at > base && waiting[at - 1].1 < squared {
-                    waiting[at] = waiting[at - 1];
+                    waiting.swap(at - 1, at);
                     at -= 1;
                 }
-                waiting[at] = (node.children[i], squared);
-                count += 1;
             }
         }
     }
