@@ -125,6 +125,10 @@ fn count(bytes: i64) {
 #[cfg(target_env = "gnu")]
 const LARGE: i32 = 4 << 20;
 
+/// Places for each core that threads take memory from.
+#[cfg(target_env = "gnu")]
+const PLACES: usize = 2;
+
 /// Has large pieces of memory given back as soon as they are free. Left alone, glibc keeps for each thread that once
 /// freed a large piece pieces of up to that size, and a run of large models comes to twice the memory.
 pub fn give_back_large_pieces() {
@@ -134,10 +138,10 @@ pub fn give_back_large_pieces() {
     unsafe {
         libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE);
         libc::mallopt(libc::M_TRIM_THRESHOLD, 4 * LARGE);
-        // Places that threads take memory from. What one stage takes another gives back: a place for each model that is
-        // computed keeps less memory than one for each thread.
-        let places = std::thread::available_parallelism().map_or(2, |cores| cores.get().max(2));
-        libc::mallopt(libc::M_ARENA_MAX, places.min(1024) as i32);
+        // Places that threads take memory from. What one stage takes another gives back: a few places keep less memory
+        // than one for each thread, but where there is only one for each core, threads wait for each other.
+        let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        libc::mallopt(libc::M_ARENA_MAX, (PLACES * cores.min(1024)) as i32);
     }
 }
 
