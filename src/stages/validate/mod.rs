@@ -281,3 +281,27 @@ fn check(
     let Group { plane, residual, weight, source, .. } = group;
     Some(ValidatedPlane { plane, residual, weight, source, pairs, correlation, coarse })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Transform, Vector};
+    use crate::stages::fixture::{cuboid, solid};
+
+    #[test]
+    fn a_plane_that_maps_a_share_is_no_farther_away_than_that_allows() {
+        // A bar of 4 x 1 x 1 beside a unit cube: the bar's own plane x = 2 maps 18 of 24, and the centroid is at
+        // (18 * 2 + 6 * 5.5) / 24 = 2.875.
+        let cube = cuboid(1.0, 1.0, 1.0).into_iter().map(|f| f.iter().map(|p| p + Vector::x() * 5.0).collect());
+        let polygons: Vec<_> = cuboid(4.0, 1.0, 1.0).into_iter().chain(cube).collect();
+        let parsed = solid(&polygons, &Transform::identity());
+        let field = SurfaceField::new(&parsed, 2000, 0.004, 0.866);
+        let plane = Plane { normal: Vector::x(), offset: 2.0 };
+        let support = field.support(&parsed.mesh, &plane.reflection(), &Cancel::new()).unwrap();
+        assert!((support.share - 0.75).abs() <= 4.0 * support.error.max(1e-3), "{support:?}");
+        let distance = plane.signed_distance(&parsed.measures.centroid).abs();
+        assert!((distance - 0.875).abs() < 1e-9);
+        assert!(distance <= farthest(&parsed, &field, support.share));
+        assert!(distance > farthest(&parsed, &field, 0.95));
+    }
+}
