@@ -85,6 +85,31 @@ mod tests {
         assert_eq!(convex_hull(points), [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
     }
 
+    /// As slices have them: rows of equal heights, points met twice, nearly straight sides, and all on one line.
+    #[test]
+    fn the_hull_reaches_as_far_as_its_points_in_every_direction() {
+        for kind in 0..60 {
+            let share = |i: usize, step: f64| (i as f64 * step + f64::from(kind) * 0.3).fract();
+            let point = |i: usize| {
+                let (x, y) = (share(i, 0.754_877_666), share(i, 0.569_840_291));
+                match kind % 4 {
+                    0 => [x, y],
+                    1 => [(x * 4.0).floor(), (y * 4.0).floor()],
+                    2 => [x, 1e-16 * y + f64::from(kind) * x],
+                    _ => [(x * 3.0).floor(), y],
+                }
+            };
+            let points: Vec<_> = (0..3 + kind as usize).map(point).collect();
+            let hull = convex_hull(points.clone());
+            assert!(hull.iter().all(|p| points.contains(p)));
+            for turn in 0..90 {
+                let (sin, cos) = (f64::from(turn) * std::f64::consts::TAU / 90.0).sin_cos();
+                let reach = |all: &[[f64; 2]]| all.iter().map(|p| p[0] * cos + p[1] * sin).fold(f64::MIN, f64::max);
+                assert!((reach(&hull) - reach(&points)).abs() <= 1e-12, "{kind}: {points:?}");
+            }
+        }
+    }
+
     fn square() -> Vec<Point2> {
         [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point2::from).to_vec()
     }
