@@ -1,7 +1,7 @@
 //! Faces in the coordinates of their bodies -> the mesh of all occurrences.
 
 use super::face::FaceMesh;
-use crate::brep::{EdgeId, FaceGeometry, Mesh, MeshFace, Model, Occurrence, Skipped, Surface};
+use crate::brep::{BodyId, EdgeId, FaceGeometry, FaceId, Mesh, MeshFace, Model, Occurrence, Skipped, Surface};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Transform, Vector};
 
@@ -58,9 +58,16 @@ impl Placed {
 
 /// Triangles of all occurrences together; faces that were not tessellated any more count as the others do.
 pub(super) fn triangles(model: &Model, faces: &[Result<FaceMesh, String>]) -> usize {
-    let of_body = |o: &Occurrence| model.faces_of(o.body).filter_map(|id| faces.get(id.index())?.as_ref().ok());
-    let placed: usize = model.occurrences.iter().flat_map(of_body).map(|face| face.triangles.len()).sum();
+    let placed = in_all(model, faces, |face| face.triangles.len());
     (placed as f64 * model.faces.len() as f64 / faces.len().max(1) as f64) as usize
+}
+
+/// The sizes of the faces of all occurrences together, each body's summed once: it may be at very many places.
+fn in_all(model: &Model, faces: &[Result<FaceMesh, String>], size: fn(&FaceMesh) -> usize) -> usize {
+    let of_face = |id: FaceId| Some(size(faces.get(id.index())?.as_ref().ok()?));
+    let of_body = |body: usize| model.faces_of(BodyId(body as u32)).filter_map(of_face).sum();
+    let of_bodies: Vec<usize> = (0..model.bodies.len()).map(of_body).collect();
+    model.occurrences.iter().fold(0, |sum, o| sum.saturating_add(of_bodies[o.body.index()]))
 }
 
 /// Puts every face where each occurrence of its body has it.
@@ -71,10 +78,7 @@ pub(super) fn place(
     cancel: &Cancel,
 ) -> Result<Placed, Cancelled> {
     let mut placed = Placed::default();
-    let sizes = |size: fn(&FaceMesh) -> usize| {
-        let of_body = |o: &Occurrence| model.faces_of(o.body).filter_map(|id| faces.get(id.index())?.as_ref().ok());
-        model.occurrences.iter().flat_map(of_body).map(size).sum::<usize>().min(max_triangles)
-    };
+    let sizes = |size| in_all(model, &faces, size).min(max_triangles);
     placed.mesh.points.reserve_exact(sizes(|face| face.points.len()));
     placed.mesh.triangles.reserve_exact(sizes(|face| face.triangles.len()));
     for (index, occurrence) in model.occurrences.iter().enumerate() {
