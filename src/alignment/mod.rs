@@ -149,11 +149,11 @@ pub(crate) fn principal_axes(covariance: &Matrix) -> [Vector; 3] {
 
 /// The triangles of a mesh that have an area: corners, unit normal, area.
 pub(crate) fn triangles(mesh: &Mesh) -> impl Iterator<Item = ([Point; 3], Vector, f64)> + '_ {
-    mesh.triangles.iter().filter_map(|&[a, b, c]| {
-        let [a, b, c] = [mesh.points[a as usize], mesh.points[b as usize], mesh.points[c as usize]];
-        let doubled = (b - a).cross(&(c - a));
+    (0..mesh.triangles.len()).filter_map(|t| {
+        let corners = mesh.corners(t);
+        let doubled = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
         let length = doubled.norm();
-        (length > 0.0 && length.is_finite()).then(|| ([a, b, c], doubled / length, 0.5 * length))
+        (length > 0.0 && length.is_finite()).then(|| (corners, doubled / length, 0.5 * length))
     })
 }
 

@@ -5,7 +5,7 @@
 
 use std::cmp::Reverse;
 
-use crate::brep::{Mesh, MeshFace};
+use crate::brep::{Mesh, MeshFace, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
 
@@ -47,18 +47,17 @@ impl Raster {
     /// Draws a mesh by the coordinates of its points: every pixel that a triangle touches, so that thin sheets seen
     /// edge-on do not vanish.
     pub fn draw(&self, mesh: &Mesh, [x, y]: [&Coordinates; 2], cancel: &Cancel) -> Result<Silhouette, Cancelled> {
-        let mut brush = Brush { picture: Silhouette::new(self.side) };
+        let mut picture = Silhouette::new(self.side);
         let boxed = |number: usize| Pixels { x: x.faces[number], y: y.faces[number] };
         let mut faces: Vec<_> = (0..mesh.faces.len()).map(|n| (Reverse(boxed(n).area()), n as u32)).collect();
         faces.sort_unstable();
         for number in faces.into_iter().map(|(_, number)| number as usize) {
-            if !brush.covers(&boxed(number)) {
-                let triangles = &mesh.faces[number].triangles;
-                let triangles = &mesh.triangles[triangles.start as usize..triangles.end as usize];
-                brush.face(triangles, [x, y], cancel)?;
+            if !boxed(number).are_covered(&picture) {
+                let triangles = &mesh.triangles[mesh.triangles_of(PlacedFaceId(number as u32))];
+                draw_face(&mut picture, triangles, [x, y], cancel)?;
             }
         }
-        Ok(brush.picture)
+        Ok(picture)
     }
 }
 
@@ -73,6 +72,11 @@ impl Pixels {
     fn area(&self) -> u32 {
         let side = |[first, last]: [u16; 2]| u32::from(last.saturating_sub(first)) + 1;
         side(self.x) * side(self.y)
+    }
+
+    fn are_covered(&self, picture: &Silhouette) -> bool {
+        let ([first, last], [low, high]) = (self.x.map(usize::from), self.y.map(usize::from));
+        picture.covers(low..high + 1, first, last + 1)
     }
 }
 
@@ -109,54 +113,46 @@ impl Side {
     }
 }
 
-/// A picture being drawn.
-struct Brush {
-    picture: Silhouette,
+/// Covers every pixel that one of the triangles of a face touches.
+fn draw_face(
+    picture: &mut Silhouette,
+    triangles: &[[u32; 3]],
+    [x, y]: [&Coordinates; 2],
+    cancel: &Cancel,
+) -> Result<(), Cancelled> {
+    for some in triangles.chunks(4096) {
+        cancel.check()?;
+        for corners in some {
+            let corners = corners.map(|i| i as usize);
+            let pixels = Pixels { x: bounds(&corners.map(|i| x.cells[i])), y: bounds(&corners.map(|i| y.cells[i])) };
+            if !pixels.are_covered(picture) {
+                touch(picture, corners.map(|i| Corner { x: x.exact[i], y: y.exact[i], row: y.cells[i] }), &pixels);
+            }
+        }
+    }
+    Ok(())
 }
 
-impl Brush {
-    fn covers(&self, pixels: &Pixels) -> bool {
-        let ([first, last], [low, high]) = (pixels.x.map(usize::from), pixels.y.map(usize::from));
-        self.picture.covers(low..high + 1, first, last + 1)
+/// Covers every pixel that the triangle touches.
+fn touch(picture: &mut Silhouette, mut corners: [Corner; 3], pixels: &Pixels) {
+    let [low, high] = pixels.y;
+    if low == high {
+        return picture.fill(low.into(), pixels.x[0].into(), usize::from(pixels.x[1]) + 1);
     }
-
-    /// Covers every pixel that one of the triangles touches.
-    fn face(&mut self, triangles: &[[u32; 3]], [x, y]: [&Coordinates; 2], cancel: &Cancel) -> Result<(), Cancelled> {
-        for some in triangles.chunks(4096) {
-            cancel.check()?;
-            for corners in some {
-                let corners = corners.map(|i| i as usize);
-                let pixels =
-                    Pixels { x: bounds(&corners.map(|i| x.cells[i])), y: bounds(&corners.map(|i| y.cells[i])) };
-                if !self.covers(&pixels) {
-                    self.touch(corners.map(|i| Corner { x: x.exact[i], y: y.exact[i], row: y.cells[i] }), &pixels);
-                }
-            }
+    corners.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
+    let [a, b, c] = corners;
+    let (long, lower, upper) = (Side::up(a, c), Side::up(a, b), Side::up(b, c));
+    let side = picture.side() as u32;
+    let mut entered = [a.x; 2];
+    for row in low..=high {
+        let left = ordered(long.leaves(row), if row < b.row { lower.leaves(row) } else { upper.leaves(row) });
+        let mut span = [less(entered[0], left[0]), more(entered[1], left[1])];
+        if row == b.row {
+            span = [less(span[0], b.x), more(span[1], b.x)];
         }
-        Ok(())
-    }
-
-    /// Covers every pixel that the triangle touches.
-    fn touch(&mut self, mut corners: [Corner; 3], pixels: &Pixels) {
-        let [low, high] = pixels.y;
-        if low == high {
-            return self.picture.fill(low.into(), pixels.x[0].into(), usize::from(pixels.x[1]) + 1);
-        }
-        corners.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
-        let [a, b, c] = corners;
-        let (long, lower, upper) = (Side::up(a, c), Side::up(a, b), Side::up(b, c));
-        let side = self.picture.side() as u32;
-        let mut entered = [a.x; 2];
-        for row in low..=high {
-            let left = ordered(long.leaves(row), if row < b.row { lower.leaves(row) } else { upper.leaves(row) });
-            let mut span = [less(entered[0], left[0]), more(entered[1], left[1])];
-            if row == b.row {
-                span = [less(span[0], b.x), more(span[1], b.x)];
-            }
-            let [first, last] = span.map(|x| (x as u32).min(side - 1) as usize);
-            self.picture.fill(row.into(), first, last + 1);
-            entered = left;
-        }
+        let [first, last] = span.map(|x| (x as u32).min(side - 1) as usize);
+        picture.fill(row.into(), first, last + 1);
+        entered = left;
     }
 }
 

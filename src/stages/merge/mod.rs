@@ -148,6 +148,13 @@ pub struct SymmetryPlane {
     pub correlation: Option<f64>,
 }
 
+impl SymmetryPlane {
+    /// Takes note of a support that was measured.
+    fn set_support(&mut self, by: Support) {
+        (self.coverage, self.error) = (by.share, by.error);
+    }
+}
+
 /// The symmetries of a model, best plane first.
 #[derive(Clone, Debug)]
 pub struct Symmetries {
@@ -178,12 +185,14 @@ pub fn merge(
     merger.run().map_err(|c| ModelError::cancelled(Stage::Merge, c))
 }
 
-/// Three standard deviations of a share measured by 500 samples, and by 4,000.
-const COARSE_DOUBT: f64 = 0.06;
-const MIDDLE_DOUBT: f64 = 0.02;
-/// The standard error that tells supports apart: a fifth of a tie; and how many of them are beyond doubt.
-const KNOWN: f64 = 1e-3;
+/// How many standard errors are beyond doubt.
 const SURE: f64 = 3.0;
+/// The standard error of a share measured by 500 samples; what such a share is in doubt by, and one by 4,000.
+const COARSE_ERROR: f64 = 0.02;
+const COARSE_DOUBT: f64 = SURE * COARSE_ERROR;
+const MIDDLE_DOUBT: f64 = 0.02;
+/// The standard error that tells supports apart: a fifth of a tie.
+const FINE_ERROR: f64 = 1e-3;
 
 /// What the steps of the stage share.
 struct Merger<'a> {
@@ -269,7 +278,7 @@ impl Merger<'_> {
         SymmetryPlane {
             plane,
             coverage: validated.coarse,
-            error: COARSE_DOUBT / 3.0,
+            error: COARSE_ERROR,
             residual,
             pairs: Vec::new(),
             selfs: Vec::new(),
@@ -307,7 +316,7 @@ impl Merger<'_> {
         for plane in pool {
             let needed = self.near_best(best, MIDDLE_DOUBT);
             let support = self.validated.field.middle(&plane.plane.reflection(), needed, self.cancel)?;
-            (plane.coverage, plane.error) = (support.share, support.error);
+            plane.set_support(support);
             // Others may still be dropped, and the bound with them.
             if plane.coverage >= self.options.near_global {
                 best = plane.coverage.max(best);
@@ -324,8 +333,7 @@ impl Merger<'_> {
         for plane in pool.iter_mut().filter(|p| may_tie(p) && self.is_in_doubt(p)) {
             let known = Support { share: plane.coverage, error: plane.error };
             let reflection = plane.plane.reflection();
-            let support = self.validated.field.completed(&self.parsed.mesh, &reflection, known, self.cancel)?;
-            (plane.coverage, plane.error) = (support.share, support.error);
+            plane.set_support(self.validated.field.completed(&self.parsed.mesh, &reflection, known, self.cancel)?);
         }
         Ok(())
     }
@@ -334,7 +342,7 @@ impl Merger<'_> {
     fn is_in_doubt(&self, plane: &SymmetryPlane) -> bool {
         let SymmetryPlane { coverage, error, .. } = *plane;
         let bounds = [self.options.exact, self.options.near_global, self.options.partial];
-        error > KNOWN || bounds.iter().any(|bound| (coverage - bound).abs() <= SURE * error)
+        error > FINE_ERROR || bounds.iter().any(|bound| (coverage - bound).abs() <= SURE * error)
     }
 
     /// The least coverage that is reported beside the best one, where both are in doubt.

@@ -5,7 +5,7 @@
 //! planes.
 
 use super::open::Open;
-use super::{COARSE_DOUBT, Merger, SymmetryPlane};
+use super::{COARSE_ERROR, Merger, SymmetryPlane};
 use crate::alignment::npca;
 use crate::brep::sample::Sample;
 use crate::cancel::Cancelled;
@@ -63,7 +63,7 @@ pub(super) fn planes(merger: &Merger, pool: &[SymmetryPlane]) -> Result<Vec<Symm
 /// A plane that faces do not speak for.
 pub(super) fn candidate(plane: Plane, coverage: f64, residual: f64) -> SymmetryPlane {
     let source = Source::Principal;
-    let error = COARSE_DOUBT / 3.0;
+    let error = COARSE_ERROR;
     SymmetryPlane { plane, coverage, error, residual, pairs: Vec::new(), selfs: Vec::new(), source, correlation: None }
 }
 

@@ -1,6 +1,7 @@
 //! The order of planes: by support, and where that ties, by what no pose changes.
 
 use super::{Merger, SymmetryPlane};
+use crate::alignment::triangles;
 use crate::cancel::Cancelled;
 use crate::geometry::{Plane, Vector, any_perpendicular};
 use crate::silhouette::draw::Raster;
@@ -103,9 +104,9 @@ impl Key {
         let size = measures.tolerance.size();
         let (mesh, normal): (_, Vector) = (&merger.parsed.mesh, plane.plane.normal);
         let (mut facing, mut area) = (0.0, 0.0);
-        for doubled in (0..mesh.triangles.len()).map(|t| mesh.doubled_normal(t)) {
-            facing += doubled.dot(&normal).abs();
-            area += doubled.norm();
+        for (_, facet, size) in triangles(mesh) {
+            facing += size * facet.dot(&normal).abs();
+            area += size;
         }
         let distance = plane.plane.signed_distance(&measures.centroid);
         let steps = |x: f64, step: f64| (x / (step * size)).round() as i64;
