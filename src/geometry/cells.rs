@@ -5,8 +5,15 @@
 pub fn first_centre(c: f64, count: usize) -> usize {
     // Not by `ceil`: that is a call of the C library on processors without SSE 4.1.
     let from_first = (c - 0.5).clamp(0.0, count as f64);
-    let whole = from_first as usize;
-    whole + usize::from((whole as f64) < from_first)
+    // Nor by 64 bits: those take several instructions each way.
+    let whole = from_first as u32;
+    whole as usize + usize::from(f64::from(whole) < from_first)
+}
+
+/// The centre of a cell.
+#[inline]
+pub fn centre(cell: usize) -> f64 {
+    f64::from(cell as u32) + 0.5
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ pub mod cells;
 pub mod directions;
 pub mod frame;
 pub mod isometry;
+pub mod order;
 pub mod plane;
 pub mod plane_index;
 pub mod point_grid;

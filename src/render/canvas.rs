@@ -109,17 +109,28 @@ impl Canvas {
     /// or on the background.
     pub fn shade(&mut self) {
         let width = self.side * self.samples;
+        let mut colours = vec![WHITE; self.seen.len()];
+        for (y, row) in colours.chunks_exact_mut(width.max(1)).enumerate() {
+            let seen = &self.seen[y * width..];
+            let below = &self.seen[(y + 1).min(width - 1) * width..];
+            for (x, colour) in row.iter_mut().enumerate() {
+                let (own, right) = (seen[x], seen[(x + 1).min(width - 1)]);
+                if let Some(surface) = self.surfaces.get(own as usize) {
+                    *colour = surface.colour(x, y);
+                }
+                if self.borders(own, right) || self.borders(own, below[x]) {
+                    *colour = blend(*colour, [0; 3], OUTLINE);
+                }
+            }
+        }
+        self.colours = colours;
+    }
+
+    /// Whether surfaces belong to different faces.
+    #[inline]
+    fn borders(&self, a: u32, b: u32) -> bool {
         let face = |surface: u32| self.surfaces.get(surface as usize).map(|s| s.face);
-        let colour = |(x, y): (usize, usize)| {
-            let at = y * width + x;
-            let seen = self.seen[at];
-            let colour = self.surfaces.get(seen as usize).map_or(WHITE, |surface| surface.colour(x, y));
-            let right = self.seen[if x + 1 < width { at + 1 } else { at }];
-            let below = self.seen[if y + 1 < width { at + width } else { at }];
-            let borders = |other: u32| other != seen && face(other) != face(seen);
-            if borders(right) || borders(below) { blend(colour, [0; 3], OUTLINE) } else { colour }
-        };
-        self.colours = (0..width).flat_map(|y| (0..width).map(move |x| (x, y))).map(colour).collect();
+        a != b && face(a) != face(b)
     }
 
     /// Lays a translucent square over what lies behind it.
@@ -158,7 +169,8 @@ impl Canvas {
 
     /// The colours of the pixels, row by row from the top.
     pub fn pixels(&self) -> impl Iterator<Item = Rgb> {
-        (0..self.side).flat_map(move |y| (0..self.side).map(move |x| self.mean(x, y)))
+        let rows = self.colours.chunks_exact((self.side * self.samples * self.samples).max(1));
+        rows.flat_map(|row| self.means(row))
     }
 
     /// The picture: the mean of the samples of each pixel.
@@ -172,16 +184,17 @@ impl Canvas {
         picture
     }
 
-    fn mean(&self, x: usize, y: usize) -> Rgb {
+    /// The mean of the samples of each pixel of a row.
+    fn means(&self, row: &[Rgb]) -> Vec<Rgb> {
         let n = self.samples;
-        let mut sum = [0u32; 3];
-        for row in 0..n {
-            let start = (y * n + row) * self.side * n + x * n;
-            for colour in &self.colours[start..start + n] {
-                (0..3).for_each(|c| sum[c] += u32::from(colour[c]));
+        let mut sums = vec![[0u32; 3]; self.side];
+        for samples in row.chunks_exact(self.side * n) {
+            for (sum, pixel) in sums.iter_mut().zip(samples.chunks_exact(n)) {
+                pixel.iter().for_each(|colour| (0..3).for_each(|c| sum[c] += u32::from(colour[c])));
             }
         }
-        sum.map(|s| (s / (n * n) as u32) as u8)
+        let count = (n * n) as u32;
+        sums.into_iter().map(|sum| sum.map(|s| (s / count) as u8)).collect()
     }
 
     /// Calls `draw` for each sample inside a triangle with the depth there.

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::geometry::cells::first_centre;
+use crate::geometry::cells::{centre, first_centre};
+use crate::geometry::order::{less, more};
 
 /// A triangle in the picture, its corners from the top down.
 pub(super) struct Triangle {
@@ -18,7 +19,7 @@ impl Triangle {
     pub fn new(mut corners: [[f64; 2]; 3], width: usize) -> Option<Self> {
         let misses = |i: usize| {
             let [a, b, c] = corners.map(|corner| corner[i]);
-            first_centre(a.min(b).min(c), width) == first_centre(a.max(b).max(c), width)
+            first_centre(less(less(a, b), c), width) == first_centre(more(more(a, b), c), width)
         };
         if misses(0) || misses(1) {
             return None;
@@ -37,10 +38,10 @@ impl Triangle {
     pub fn spans(&self) -> impl Iterator<Item = (usize, Range<usize>)> {
         let Self { width, corners: [a, b, c], slopes: [long, upper, lower] } = *self;
         (first_centre(a[1], width)..first_centre(c[1], width)).map(move |y| {
-            let height = y as f64 + 0.5;
+            let height = centre(y);
             let p = a[0] + (height - a[1]) * long;
             let q = if height < b[1] { a[0] + (height - a[1]) * upper } else { b[0] + (height - b[1]) * lower };
-            (y, first_centre(p.min(q), width)..first_centre(p.max(q), width))
+            (y, first_centre(less(p, q), width)..first_centre(more(p, q), width))
         })
     }
 }
@@ -71,7 +72,7 @@ impl Ramp {
     /// The value at the centre of a sample.
     #[inline]
     pub fn at(&self, x: usize, y: usize) -> f64 {
-        let [right, down] = [x as f64 + 0.5 - self.corner[0], y as f64 + 0.5 - self.corner[1]];
+        let [right, down] = [centre(x) - self.corner[0], centre(y) - self.corner[1]];
         self.value + down * self.down + right * self.right
     }
 }

@@ -7,6 +7,7 @@ use std::cmp::Reverse;
 
 use crate::brep::{Mesh, MeshFace, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
+use crate::geometry::order::{less, more};
 use crate::geometry::{Point, Vector};
 
 use super::Silhouette;
@@ -154,18 +155,6 @@ fn touch(picture: &mut Silhouette, mut corners: [Corner; 3], pixels: &Pixels) {
         picture.fill(row.into(), first, last + 1);
         entered = left;
     }
-}
-
-/// The lesser of two coordinates. They are numbers: comparing is all there is to it.
-#[inline]
-fn less(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The larger of two coordinates.
-#[inline]
-fn more(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 #[inline]
