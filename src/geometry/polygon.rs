@@ -41,7 +41,7 @@ pub fn convex_hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 /// Appends the convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain). The points
 /// are left sorted.
 pub fn push_hull(points: &mut [[f64; 2]], hull: &mut Vec<[f64; 2]>) {
-    points.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    sort(points);
     let mut distinct = 1;
     for i in 1..points.len() {
         if points[i] != points[distinct - 1] {
@@ -60,6 +60,25 @@ pub fn push_hull(points: &mut [[f64; 2]], hull: &mut Vec<[f64; 2]>) {
     hull.truncate(upper);
     push_chain(points.iter().rev(), upper, hull);
     hull.pop();
+}
+
+/// Sorts points by their first coordinate, then by the second, as whole numbers that are compared at once.
+fn sort(points: &mut [[f64; 2]]) {
+    let mut keys: Vec<_> = points.iter().map(|&[x, y]| u128::from(key(x)) << 64 | u128::from(key(y))).collect();
+    keys.sort_unstable();
+    let coordinates = |key: u128| [key >> 64, key].map(|bits| coordinate(bits as u64));
+    points.iter_mut().zip(keys).for_each(|(point, key)| *point = coordinates(key));
+}
+
+/// Bits that compare like the number.
+fn key(c: f64) -> u64 {
+    let bits = c.to_bits();
+    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
+}
+
+/// The number with such bits.
+fn coordinate(key: u64) -> f64 {
+    f64::from_bits(if key >> 63 == 1 { key & !(1 << 63) } else { !key })
 }
 
 fn push_chain<'a>(points: impl Iterator<Item = &'a [f64; 2]>, base: usize, hull: &mut Vec<[f64; 2]>) {
@@ -112,6 +131,14 @@ mod tests {
 
     fn square() -> Vec<Point2> {
         [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(Point2::from).to_vec()
+    }
+
+    #[test]
+    fn points_are_sorted_by_both_coordinates() {
+        let sorted = [[f64::NEG_INFINITY, 1.0], [-3.5, -2.0], [-3.5, 1e-300], [0.0, -0.0], [0.0, 0.0], [2.0, -1.0]];
+        let mut points = [3, 5, 0, 2, 4, 1].map(|i| sorted[i]);
+        sort(&mut points);
+        assert_eq!(points.map(|p| p.map(f64::to_bits)), sorted.map(|p| p.map(f64::to_bits)));
     }
 
     #[test]

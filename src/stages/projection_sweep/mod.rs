@@ -17,6 +17,7 @@ mod curve;
 mod pixels;
 mod reference;
 mod shadow;
+mod slabs;
 mod slices;
 mod widths;
 mod wire;

@@ -2,9 +2,12 @@
 //!
 //! A triangle casts an interval from every slice that it crosses; what a connected piece casts is the union of those.
 
+use std::ops::Range;
+
 use crate::brep::{Mesh, MeshFace};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::cells::first_centre;
+use crate::geometry::order::{less, more};
 use crate::geometry::{Point, Vector};
 
 /// Area of the mesh's shadow on the plane of `across` and `along` (at right angles, unit vectors), mm^2: the mesh is cut
@@ -30,7 +33,10 @@ pub fn area(
     let level = |height: f64| first_centre((height - low) / thickness, count);
     let corners = corners.into_iter().map(|(height, x)| Corner { height, x, level: level(height) as u32 }).collect();
     let mut cut = Cut { corners, low, thickness, shadows: vec![Union::default(); count] };
-    for face in cut.widest_first(mesh) {
+    for (extent, face) in cut.widest_first(mesh) {
+        if cut.holds(&extent) {
+            continue;
+        }
         let triangles = &mesh.triangles[face.triangles.start as usize..face.triangles.end as usize];
         for some in triangles.chunks(4096) {
             cancel.check()?;
@@ -56,17 +62,38 @@ struct Cut {
     shadows: Vec<Union>,
 }
 
+/// How far something reaches along the shadows, and the slices that it may cross.
+struct Extent {
+    x: [f64; 2],
+    slices: Range<usize>,
+}
+
+impl Extent {
+    fn of(corners: &[Corner]) -> Self {
+        let start = (f64::INFINITY, f64::NEG_INFINITY, u32::MAX, 0);
+        let ends = corners.iter().fold(start, |(left, right, first, end), c| {
+            (less(left, c.x), more(right, c.x), first.min(c.level), end.max(c.level))
+        });
+        Self { x: [ends.0, ends.1], slices: ends.2.min(ends.3) as usize..ends.3 as usize }
+    }
+
+    fn width(&self) -> f64 {
+        self.x[1] - self.x[0]
+    }
+}
+
 impl Cut {
     /// The faces, those first that cast the widest shadows: most of what the others cast lies within these.
-    fn widest_first<'a>(&self, mesh: &'a Mesh) -> Vec<&'a MeshFace> {
-        let width = |face: &MeshFace| {
-            let corners = &self.corners[face.points.start as usize..face.points.end as usize];
-            let ends = corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], c| [l.min(c.x), h.max(c.x)]);
-            ends[1] - ends[0]
-        };
-        let mut faces: Vec<_> = mesh.faces.iter().map(|face| (width(face), face)).collect();
-        faces.sort_by(|a, b| b.0.total_cmp(&a.0));
-        faces.into_iter().map(|(_, face)| face).collect()
+    fn widest_first<'a>(&self, mesh: &'a Mesh) -> Vec<(Extent, &'a MeshFace)> {
+        let corners = |face: &MeshFace| &self.corners[face.points.start as usize..face.points.end as usize];
+        let mut faces: Vec<_> = mesh.faces.iter().map(|face| (Extent::of(corners(face)), face)).collect();
+        faces.sort_by(|a, b| b.0.width().total_cmp(&a.0.width()));
+        faces
+    }
+
+    /// Whether the shadows hold already what lies within an extent.
+    fn holds(&self, extent: &Extent) -> bool {
+        self.shadows[extent.slices.clone()].iter().all(|shadow| shadow.holds(extent.x[0], extent.x[1]))
     }
 
     /// Adds what a triangle casts to the shadows of the slices that it crosses.
@@ -76,17 +103,16 @@ impl Cut {
             return;
         }
         let [a, b, c] = upward(corners);
-        let (left, right) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
+        let (left, right) = (less(less(a.x, b.x), c.x), more(more(a.x, b.x), c.x));
+        let (long, below, above) = (Side::up(&a, &c), Side::up(&a, &b), Side::up(&b, &c));
         for (slice, shadow) in (a.level..c.level).zip(&mut self.shadows[a.level as usize..c.level as usize]) {
             if shadow.holds(left, right) {
                 continue;
             }
             let height = self.low + (f64::from(slice) + 0.5) * self.thickness;
-            let (p, q) = (
-                crossing(&a, &c, height),
-                if slice < b.level { crossing(&a, &b, height) } else { crossing(&b, &c, height) },
-            );
-            shadow.add(p.min(q), p.max(q));
+            let p = long.at(height);
+            let q = if slice < b.level { below.at(height) } else { above.at(height) };
+            shadow.add(less(p, q), more(p, q));
         }
     }
 }
@@ -97,10 +123,24 @@ fn upward(mut corners: [Corner; 3]) -> [Corner; 3] {
     corners
 }
 
-/// Where the side from `a` up to `b` is at a height.
-fn crossing(a: &Corner, b: &Corner, height: f64) -> f64 {
-    let share = ((height - a.height) / (b.height - a.height)).clamp(0.0, 1.0);
-    a.x + share * (b.x - a.x)
+/// A side of a triangle.
+struct Side {
+    from: f64,
+    gain: f64,
+    low: f64,
+    per_height: f64,
+}
+
+impl Side {
+    fn up(a: &Corner, b: &Corner) -> Self {
+        Self { from: a.x, gain: b.x - a.x, low: a.height, per_height: 1.0 / (b.height - a.height) }
+    }
+
+    /// Where it is at a height that it passes.
+    #[inline]
+    fn at(&self, height: f64) -> f64 {
+        self.from + less(more((height - self.low) * self.per_height, 0.0), 1.0) * self.gain
+    }
 }
 
 /// The union of intervals given one by one.
@@ -129,7 +169,7 @@ impl Union {
 
     fn add(&mut self, low: f64, high: f64) {
         if self.main[0] > self.main[1] || (low <= self.main[1] && high >= self.main[0]) {
-            self.main = [self.main[0].min(low), self.main[1].max(high)];
+            self.main = [less(self.main[0], low), more(self.main[1], high)];
         } else {
             self.others.push([low, high]);
             if self.others.len() > self.most {

@@ -16,6 +16,7 @@ use crate::stages::parse::Parsed;
 use super::cover::uncovered;
 use super::curve::Shadows;
 use super::reference::Turntable;
+use super::slabs::{Slab, Slabs};
 use super::widths::Widths;
 use super::wire::Wire;
 
@@ -42,11 +43,13 @@ pub struct Slices {
     stood: Option<f64>,
 }
 
-/// The pieces of the cut at one height: convex hulls, counter-clockwise, one after the other.
+/// The pieces of the cut at one height, or at several where it is the same: convex hulls, counter-clockwise, one after the other.
 #[derive(Clone, Debug, Default)]
 struct Slice {
     points: Vec<Flat>,
     hulls: Vec<Range<usize>>,
+    /// How many slices look like this.
+    alike: usize,
     /// Of each hull, the lowest and the highest point in the direction last stood at.
     extremes: Vec<[usize; 2]>,
 }
@@ -56,7 +59,7 @@ struct Slice {
 const NEAR: f64 = 0.1;
 
 /// Heights of points that differ by less than this share of the largest coordinate may differ by rounding only.
-const NOISE: f64 = 1e-12;
+pub(super) const NOISE: f64 = 1e-12;
 
 impl Slices {
     /// Cuts the model for the shadows along directions at right angles to `axis`, angles counted from `start`.
@@ -71,7 +74,8 @@ impl Slices {
     }
 
     fn new(thickness: f64, mut slices: Vec<Slice>) -> Self {
-        let widths = Widths::of(slices.iter().filter(|slice| slice.hulls.len() == 1).map(|slice| &slice.points[..]));
+        let convex = slices.iter().filter(|slice| slice.hulls.len() == 1);
+        let widths = Widths::of(convex.map(|slice| (&slice.points[..], slice.alike)));
         slices.retain(|slice| slice.hulls.len() > 1);
         let coordinates = slices.iter().flat_map(|slice| slice.points.as_flattened());
         Self { reach: coordinates.fold(0.0, |most, c| most.max(c.abs())), thickness, widths, slices, stood: None }
@@ -87,12 +91,12 @@ impl Slices {
             return Ok(Self::new(0.0, Vec::new()));
         }
         let mut wire = Wire::new(mesh, table, low, thickness, count);
-        let mut crossings = wire.crossings(&(0..count));
+        let mut crossings = wire.crossings();
         if crossings > MOST_CROSSINGS && count > FEWEST_SLICES {
             count = (count * MOST_CROSSINGS / crossings).max(FEWEST_SLICES);
             thickness = (high - low) / count as f64;
             wire = Wire::new(mesh, table, low, thickness, count);
-            crossings = wire.crossings(&(0..count));
+            crossings = wire.crossings();
         }
         let block = (count * CROSSINGS / crossings.max(CROSSINGS)).max(1);
         let blocks: Vec<_> = (0..count).step_by(block).map(|s| s..(s + block).min(count)).collect();
@@ -119,11 +123,12 @@ impl Shadows for Slices {
         let mut areas: Vec<_> = directions.iter().map(|&d| self.thickness * self.widths.along(d)).collect();
         let mut walkers = Vec::new();
         for slice in &self.slices {
+            let thickness = self.thickness * slice.alike as f64;
             walkers.clear();
             walkers.extend(slice.walkers());
             for (area, &direction) in areas.iter_mut().zip(&directions) {
                 cancel.check()?;
-                *area += self.thickness * shadow_length(&slice.points, &mut walkers, direction, noise);
+                *area += thickness * shadow_length(&slice.points, &mut walkers, direction, noise);
             }
         }
         Ok(areas)
@@ -132,18 +137,33 @@ impl Shadows for Slices {
 
 /// The slices of a block.
 fn slices_of(wire: &Wire, block: &Range<usize>) -> Vec<Slice> {
-    let (mut points, pieces) = wire.pieces(block);
-    let mut slices = vec![Slice::default(); block.len()];
-    let mut from = 0;
-    for (end, slice) in pieces {
-        let slice = &mut slices[slice - block.start];
-        let start = slice.points.len();
-        polygon::push_hull(&mut points[from..end], &mut slice.points);
-        slice.hulls.push(start..slice.points.len());
-        from = end;
+    let mut slices = Vec::new();
+    for slab in Slabs::new(wire, block) {
+        push_slices(&mut slices, wire, &slab);
     }
-    slices.iter_mut().for_each(Slice::drop_covered);
     slices
+}
+
+/// Adds the slices of a slab, as one where they are all alike.
+fn push_slices(slices: &mut Vec<Slice>, wire: &Wire, slab: &Slab) {
+    let is_upright = |piece: &[u32]| piece.iter().all(|&edge| wire.is_upright(edge));
+    let number = if slab.pieces().all(is_upright) { 1 } else { slab.slices.len() };
+    let first = slices.len();
+    slices.resize(first + number, Slice { alike: slab.slices.len() / number, ..Slice::default() });
+    let (mut points, mut hull) = (Vec::new(), Vec::new());
+    for piece in slab.pieces() {
+        let upright = is_upright(piece);
+        for (slice, height) in slices[first..].iter_mut().zip(slab.slices.clone()) {
+            if !upright || height == slab.slices.start {
+                points.clear();
+                points.extend(piece.iter().map(|&edge| wire.crossing(edge, height)));
+                hull.clear();
+                polygon::push_hull(&mut points, &mut hull);
+            }
+            slice.push(&hull);
+        }
+    }
+    slices[first..].iter_mut().for_each(Slice::drop_covered);
 }
 
 /// The interval that a hull covers in a direction that turns counter-clockwise, with the points that bound it.
@@ -156,6 +176,11 @@ struct Walker {
 }
 
 impl Slice {
+    fn push(&mut self, hull: &[Flat]) {
+        self.hulls.push(self.points.len()..self.points.len() + hull.len());
+        self.points.extend_from_slice(hull);
+    }
+
     /// Drops the hulls inside the largest one, whose shadows are parts of its own: a plate with ten thousand holes
     /// casts the shadow of a plate.
     fn drop_covered(&mut self) {
@@ -163,12 +188,8 @@ impl Slice {
         if uncovered.len() == self.hulls.len() {
             return;
         }
-        let mut kept = Self::default();
-        for hull in uncovered {
-            let start = kept.points.len();
-            kept.points.extend_from_slice(&self.points[hull]);
-            kept.hulls.push(start..kept.points.len());
-        }
+        let mut kept = Self { alike: self.alike, ..Self::default() };
+        uncovered.into_iter().for_each(|hull| kept.push(&self.points[hull]));
         *self = kept;
     }
 
@@ -254,7 +275,7 @@ mod tests {
     fn a_corner_that_rounding_doubled_does_not_stop_the_walk() {
         let points = [[-1.0, -1.0], [1.0, -1.0], [1.0, -1.0 + f64::EPSILON], [1.0, 1.0], [-1.0, 1.0]];
         let hull = 0..points.len();
-        let square = Slice { points: points.to_vec(), hulls: vec![hull], extremes: Vec::new() };
+        let square = Slice { points: points.to_vec(), hulls: vec![hull], alike: 1, extremes: Vec::new() };
         let angles: Vec<_> = (0..180).map(|degrees| f64::from(degrees).to_radians()).collect();
         let areas = Slices::new(1.0, vec![square]).areas(&angles, &Cancel::new()).unwrap();
         for (angle, area) in angles.iter().zip(areas) {

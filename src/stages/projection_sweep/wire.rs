@@ -1,4 +1,4 @@
-//! The edges of a mesh and the pieces that slices cut them into.
+//! The edges of a mesh as slices cross them.
 
 use std::ops::Range;
 
@@ -9,23 +9,49 @@ use crate::geometry::cells::first_centre;
 use crate::geometry::{Point, Vector};
 
 use super::reference::Turntable;
-use super::slices::Flat;
+use super::slices::{Flat, NOISE};
 
 /// The mesh as vertices with their level (the first slice at or above them), edges and triangles of edges.
+#[derive(Default)]
 pub(super) struct Wire {
     vertices: Vec<WireVertex>,
-    /// Lower and upper vertex; first one that crosses no slice and stands for all those.
-    edges: Vec<[u32; 2]>,
-    /// The edges of each triangle that crosses a slice, the one first that crosses as many as the triangle.
-    triangles: Vec<[u32; 3]>,
+    /// First one that crosses no slice and stands for all those.
+    edges: Vec<Edge>,
+    triangles: Vec<Triangle>,
+    /// The slices that edges and triangles cross, in the order of the first of these.
+    pub rising_edges: Vec<(Range<u32>, u32)>,
+    pub rising_triangles: Vec<(Range<u32>, u32)>,
     low: f64,
     thickness: f64,
+    /// Distances that may be rounding only, mm.
+    noise: f64,
 }
 
 struct WireVertex {
     at: Flat,
     height: f64,
     level: u32,
+}
+
+/// An edge between two levels.
+struct Edge {
+    /// Lower and upper vertex.
+    ends: [u32; 2],
+    /// The third vertex of the first triangle beside it.
+    beside: u32,
+    /// No two triangles beside it go on as one plane: else its crossings lie between those of other edges, and no hull
+    /// has a corner there.
+    bends: bool,
+}
+
+/// A triangle that crosses slices, as its sides.
+pub(super) struct Triangle {
+    /// From the lowest corner to the highest.
+    pub long: u32,
+    /// From the lowest corner to the middle one, and from there to the highest.
+    pub short: [u32; 2],
+    /// The level of the middle corner.
+    pub middle: u32,
 }
 
 impl Wire {
@@ -36,7 +62,9 @@ impl Wire {
             let level = first_centre((height - low) / thickness, count) as u32;
             WireVertex { at: [table.u.dot(&d), table.v.dot(&d)], height, level }
         });
-        let mut wire = Self { vertices, edges: vec![[0, 0]], triangles: Vec::new(), low, thickness };
+        let reach = vertices.iter().flat_map(|v| v.at).fold(0.0, |most: f64, c| most.max(c.abs()));
+        let none = Edge { ends: [0; 2], beside: 0, bends: false };
+        let mut wire = Self { vertices, edges: vec![none], low, thickness, noise: NOISE * reach, ..Self::default() };
         let mut known = FxHashMap::with_capacity_and_hasher(mesh.triangles.len(), Default::default());
         for triangle in &mesh.triangles {
             let [a, b, c] = triangle.map(|i| ids[i as usize]);
@@ -44,54 +72,104 @@ impl Wire {
                 wire.push([a, b, c], &mut known);
             }
         }
+        let edges = (1..wire.edges.len() as u32).map(|edge| (wire.span(edge), edge));
+        let triangles = wire.triangles.iter().zip(0..).map(|(triangle, number)| (wire.span(triangle.long), number));
+        (wire.rising_edges, wire.rising_triangles) = (rising(edges, count), rising(triangles, count));
         wire
     }
 
     /// Adds a triangle unless it lies between two slices.
-    fn push(&mut self, [a, b, c]: [u32; 3], known: &mut FxHashMap<u64, u32>) {
-        let mut edges = [[a, b], [b, c], [c, a]].map(|e| self.edge(e, known));
-        if edges != [0; 3] {
-            edges.sort_by_key(|&e| std::cmp::Reverse(self.span(&self.edges[e as usize], 0..usize::MAX).len()));
-            self.triangles.push(edges);
+    fn push(&mut self, mut corners: [u32; 3], known: &mut FxHashMap<u64, u32>) {
+        let level = |i: u32| self.vertices[i as usize].level;
+        corners.sort_unstable_by_key(|&i| level(i));
+        let [a, b, c] = corners;
+        if level(a) == level(c) {
+            return;
         }
+        let middle = level(b);
+        let long = self.edge([a, c], b, known);
+        let short = [self.edge([a, b], c, known), self.edge([b, c], a, known)];
+        self.triangles.push(Triangle { long, short, middle });
     }
 
-    fn edge(&mut self, [a, b]: [u32; 2], known: &mut FxHashMap<u64, u32>) -> u32 {
-        let [p, q] = [a, b].map(|i| &self.vertices[i as usize]);
-        if p.level == q.level {
+    /// The edge between two vertices, the lower one first, of a triangle whose third vertex is `beside`.
+    fn edge(&mut self, ends: [u32; 2], beside: u32, known: &mut FxHashMap<u64, u32>) -> u32 {
+        let [lower, upper] = ends;
+        if self.vertices[lower as usize].level == self.vertices[upper as usize].level {
             return 0;
         }
-        let [lower, upper] = if p.level < q.level { [a, b] } else { [b, a] };
-        *known.entry(u64::from(lower) << 32 | u64::from(upper)).or_insert_with(|| {
-            self.edges.push([lower, upper]);
+        let number = *known.entry(u64::from(lower) << 32 | u64::from(upper)).or_insert_with(|| {
+            self.edges.push(Edge { ends, beside, bends: true });
             self.edges.len() as u32 - 1
-        })
+        });
+        let edge = &self.edges[number as usize];
+        if edge.bends && edge.beside != beside && self.is_plane(ends, [edge.beside, beside]) {
+            self.edges[number as usize].bends = false;
+        }
+        number
     }
 
-    /// The slices of `block` that an edge crosses.
-    fn span(&self, edge: &[u32; 2], block: Range<usize>) -> Range<usize> {
-        let [lower, upper] = edge.map(|i| self.vertices[i as usize].level as usize);
-        let start = lower.max(block.start);
-        start..upper.min(block.end).max(start)
+    /// Whether two triangles on either side of an edge lie in one plane.
+    fn is_plane(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> bool {
+        let place = |i: u32| {
+            let vertex = &self.vertices[i as usize];
+            Vector::new(vertex.at[0], vertex.at[1], vertex.height)
+        };
+        let [edge, c, d] = [b, c, d].map(|i| place(i) - place(a));
+        let [left, right] = [edge.cross(&c), edge.cross(&d)];
+        // The corner of the smaller triangle stands so far from the plane of the larger one.
+        let larger = left.norm_squared().max(right.norm_squared());
+        left.dot(&right) < 0.0 && left.dot(&d).powi(2) <= self.noise.powi(2) * larger
     }
 
-    /// How often edges cross the slices of a block.
-    pub fn crossings(&self, block: &Range<usize>) -> usize {
-        self.edges.iter().map(|e| self.span(e, block.clone()).len()).sum()
+    /// The slices that the edge crosses.
+    fn span(&self, edge: u32) -> Range<u32> {
+        let [lower, upper] = self.edges[edge as usize].ends.map(|i| self.vertices[i as usize].level);
+        lower..upper
     }
 
-    /// Cuts the slices of a block: the points of the cut piece by piece, where each piece ends, and its slice.
-    pub fn pieces(&self, block: &Range<usize>) -> (Vec<Flat>, Vec<(usize, usize)>) {
-        Crossings::new(self, block).pieces()
+    /// How often edges cross slices.
+    pub fn crossings(&self) -> usize {
+        self.rising_edges.iter().map(|(slices, _)| slices.len()).sum()
+    }
+
+    pub fn triangle(&self, number: u32) -> &Triangle {
+        &self.triangles[number as usize]
+    }
+
+    /// Whether hulls may have corners where the edge crosses.
+    pub fn bends(&self, edge: u32) -> bool {
+        self.edges[edge as usize].bends
+    }
+
+    /// Whether all slices cross the edge at the same place.
+    pub fn is_upright(&self, edge: u32) -> bool {
+        let [a, b] = self.edges[edge as usize].ends.map(|i| self.vertices[i as usize].at);
+        (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= self.noise
     }
 
     /// Where an edge crosses a slice.
-    fn crossing(&self, edge: &[u32; 2], slice: usize) -> Flat {
-        let [a, b] = edge.map(|i| &self.vertices[i as usize]);
-        let height = self.low + (slice as f64 + 0.5) * self.thickness;
+    pub fn crossing(&self, edge: u32, slice: u32) -> Flat {
+        let [a, b] = self.edges[edge as usize].ends.map(|i| &self.vertices[i as usize]);
+        let height = self.low + (f64::from(slice) + 0.5) * self.thickness;
         let share = ((height - a.height) / (b.height - a.height)).clamp(0.0, 1.0);
         [a.at[0] + share * (b.at[0] - a.at[0]), a.at[1] + share * (b.at[1] - a.at[1])]
     }
+}
+
+/// In the order of the first of `count` slices that each crosses.
+fn rising(spans: impl Iterator<Item = (Range<u32>, u32)> + Clone, count: usize) -> Vec<(Range<u32>, u32)> {
+    let mut places = vec![0; count + 1];
+    spans.clone().for_each(|(slices, _)| places[slices.start as usize] += 1);
+    let mut total = 0;
+    places.iter_mut().for_each(|place| total += std::mem::replace(place, total));
+    let mut sorted = vec![(0..0, 0); total];
+    for span in spans {
+        let place = &mut places[span.0.start as usize];
+        sorted[*place] = span;
+        *place += 1;
+    }
+    sorted
 }
 
 /// One vertex for all points with the same coordinates, and the vertex of each point.
@@ -107,95 +185,4 @@ fn weld(mesh: &Mesh, vertex: impl Fn(&Point) -> WireVertex) -> (Vec<WireVertex>,
     };
     let ids = mesh.points.iter().map(&mut id).collect();
     (vertices, ids)
-}
-
-/// All crossings of edges with the slices of a block, edge by edge, joined into connected pieces.
-struct Crossings {
-    points: Vec<Flat>,
-    slices: Vec<u32>,
-    parents: Vec<u32>,
-}
-
-impl Crossings {
-    fn new(wire: &Wire, block: &Range<usize>) -> Self {
-        let count = wire.crossings(block);
-        let [slices, parents] = [Vec::with_capacity(count), Vec::with_capacity(count)];
-        let mut all = Self { points: Vec::with_capacity(count), slices, parents };
-        let mut starts = Vec::with_capacity(wire.edges.len());
-        for edge in &wire.edges {
-            starts.push(all.points.len());
-            for slice in wire.span(edge, block.clone()) {
-                all.parents.push(all.points.len() as u32);
-                all.slices.push(slice as u32);
-                all.points.push(wire.crossing(edge, slice));
-            }
-        }
-        for triangle in &wire.triangles {
-            all.join_triangle(wire, block, triangle, &starts);
-        }
-        all
-    }
-
-    /// In every slice that a triangle crosses, its two crossings are connected.
-    fn join_triangle(&mut self, wire: &Wire, block: &Range<usize>, triangle: &[u32; 3], starts: &[usize]) {
-        let sides = triangle.map(|e| (wire.span(&wire.edges[e as usize], block.clone()), starts[e as usize]));
-        let [(long, at_long), others @ ..] = sides;
-        for (span, at) in others {
-            for slice in span.clone() {
-                self.join((at_long + slice - long.start) as u32, (at + slice - span.start) as u32);
-            }
-        }
-    }
-
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.parents[i as usize] != i {
-            let above = self.parents[self.parents[i as usize] as usize];
-            self.parents[i as usize] = above;
-            i = above;
-        }
-        i
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
-
-    /// Numbers the pieces in order of their first crossings: the piece of each crossing, and how many there are.
-    fn numbered(&mut self) -> (Vec<u32>, usize) {
-        let mut piece_of = vec![u32::MAX; self.points.len()];
-        let mut count = 0;
-        for i in 0..self.points.len() {
-            // The root is the first crossing of its piece.
-            let root = self.root(i as u32) as usize;
-            if root == i {
-                piece_of[i] = count;
-                count += 1;
-            }
-            piece_of[i] = piece_of[root];
-        }
-        (piece_of, count as usize)
-    }
-
-    /// The points piece by piece, where each piece ends, and the slice that it lies in.
-    fn pieces(mut self) -> (Vec<Flat>, Vec<(usize, usize)>) {
-        let (piece_of, count) = self.numbered();
-        let mut pieces = vec![(0, 0); count];
-        for (&piece, &slice) in piece_of.iter().zip(&self.slices) {
-            let (size, in_slice) = &mut pieces[piece as usize];
-            (*size, *in_slice) = (*size + 1, slice as usize);
-        }
-        // Sizes become starts, and as points are put in, ends.
-        let mut start = 0;
-        for (size, _) in &mut pieces {
-            start += std::mem::replace(size, start);
-        }
-        let mut points = vec![[0.0; 2]; self.points.len()];
-        for (&piece, &point) in piece_of.iter().zip(&self.points) {
-            let end = &mut pieces[piece as usize].0;
-            points[*end] = point;
-            *end += 1;
-        }
-        (points, pieces)
-    }
 }
