@@ -79,6 +79,20 @@ pub struct Outline {
     pub axis: Option<Axis>,
     /// Whether the face has an outside (it belongs to a solid), so that the order of its corners means something.
     pub oriented: bool,
+    /// Of a face of a body in several places, the shape that it has in all of them.
+    pub shape: Option<Shape>,
+}
+
+/// What outlines have in common that are one outline in several places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Shape {
+    body: BodyId,
+    /// Among the outlines of the body.
+    number: u32,
+    /// Whether the corners are listed the other way round than in the body.
+    backwards: bool,
+    /// The scale of the place, bit by bit.
+    scale: u64,
 }
 
 /// Finds the outlines of all placed faces.
@@ -90,6 +104,8 @@ pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Res
     let placed = placed_faces(parsed);
     let mut of_body: Vec<Option<Vec<LocalOutline>>> = vec![None; model.bodies.len()];
     let mut outlines = Vec::with_capacity(parsed.mesh.faces.len());
+    let mut uses = vec![0u32; model.bodies.len()];
+    model.occurrences.iter().for_each(|occurrence| uses[occurrence.body.index()] += 1);
     let mut shapes = EdgeShapes::new(model);
     for (occurrence, faces) in model.occurrences.iter().zip(&placed) {
         let cancelled = |c| ModelError::cancelled(Stage::CornerFilter, c);
@@ -103,7 +119,9 @@ pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Res
             }
         };
         let place = Place::new(&occurrence.placement);
-        outlines.extend(local.iter().filter_map(|outline| outline.placed(parsed, faces, &place)));
+        let shared = (uses[occurrence.body.index()] > 1).then_some(occurrence.body);
+        let placed = |(number, outline): (u32, &LocalOutline)| outline.placed(parsed, faces, &place, shared, number);
+        outlines.extend((0..).zip(local.iter()).filter_map(placed));
     }
     Ok(outlines)
 }
@@ -158,8 +176,16 @@ struct LocalOutline {
 }
 
 impl LocalOutline {
-    /// The outline in its occurrence; `None` where the mesh has none of its faces.
-    fn placed(&self, parsed: &Parsed, places: &PlacedFaces, place: &Place) -> Option<Outline> {
+    /// The outline in its occurrence; `None` where the mesh has none of its faces. It is the `number`-th of its body,
+    /// which is named where several occurrences share it.
+    fn placed(
+        &self,
+        parsed: &Parsed,
+        places: &PlacedFaces,
+        place: &Place,
+        shared: Option<BodyId>,
+        number: u32,
+    ) -> Option<Outline> {
         let placement = place.placement;
         let mut faces: Vec<_> = self.faces.iter().filter_map(|&f| places.find(f)).collect();
         faces.sort_unstable();
@@ -171,7 +197,8 @@ impl LocalOutline {
             faces.iter().map(|f| &parsed.mesh.faces[f.index()]).map(|f| f.centroid.coords * f.area).sum();
         let scale = place.scale;
         let mut corners: Vec<_> = self.corners.iter().map(|p| placement.point(p)).collect();
-        if self.runs_backwards(parsed, &faces, place) {
+        let backwards = self.runs_backwards(parsed, &faces, place);
+        if backwards {
             corners.reverse();
         }
         let inner =
@@ -186,6 +213,7 @@ impl LocalOutline {
             centroid: Point::from(moment / area),
             axis,
             oriented: self.oriented,
+            shape: shared.map(|body| Shape { body, number, backwards, scale: scale.to_bits() }),
             faces,
         })
     }

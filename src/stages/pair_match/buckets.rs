@@ -129,6 +129,7 @@ mod tests {
             centroid: crate::geometry::Point::origin(),
             axis: None,
             oriented: true,
+            shape: None,
         }
     }
 

@@ -6,7 +6,7 @@
 //! consecutive corner distances is near zero, in some cyclic offset and one of two directions (`cyclic`). Faces are
 //! compared only within buckets of equal invariants (`buckets`), and in a bucket of very many congruent faces only a
 //! fixed subset meets all others: a global symmetry takes every face of the subset to some face of the bucket, so
-//! its plane is still among the candidates.
+//! its plane is still among the candidates. Faces of a body in several places are matched once for all of them.
 //!
 //! Cost: faces times the subset's size; corners squared for each pair. It does not promise that matched faces are
 //! congruent: corner distances do not tell a rhombus from a square. The fit decides.
@@ -14,9 +14,11 @@
 pub mod buckets;
 mod cyclic;
 
+use rustc_hash::FxHashMap;
+
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Point;
-use crate::stages::corner_filter::Outline;
+use crate::stages::corner_filter::{Outline, Shape};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
 
@@ -192,6 +194,7 @@ pub fn pair_match(
         cancel,
         size,
         room: options.pairs_per_face.saturating_mul(outlines.len()).max(4096),
+        known: FxHashMap::default(),
         matches: Matches::default(),
     };
     for bucket in buckets::plan(outlines, &parsed.measures, options) {
@@ -210,6 +213,8 @@ struct Matcher<'a> {
     size: f64,
     /// Pairs that may still be kept.
     room: usize,
+    /// What was found for faces of bodies in several places, and whether it was a face and itself.
+    known: FxHashMap<(Shape, Shape, bool), Vec<Correspondence>>,
     matches: Matches,
 }
 
@@ -232,31 +237,99 @@ impl Matcher<'_> {
         if self.options.buckets && !buckets::alike(p, q, self.size) {
             return Ok(());
         }
-        let mut keep = |correspondence: Correspondence| {
-            if self.room > 0 {
-                self.room -= 1;
-                self.matches.pairs.push(FacePair { faces: [a, b], correspondence, weight });
-            }
-        };
         if p.corners.len() < 3 || q.corners.len() < 3 {
             if self.options.buckets && a != b {
-                keep(Correspondence::Centroids);
+                self.keep([a, b], weight, [Correspondence::Centroids]);
             }
             return Ok(());
         }
+        let Some(shapes) = p.shape.zip(q.shape).map(|(s, t)| (s, t, a == b)) else {
+            let found = self.correspondences(a, b)?;
+            self.keep([a, b], weight, found);
+            return Ok(());
+        };
+        if !self.known.contains_key(&shapes) {
+            let found = self.correspondences(a, b)?;
+            self.known.insert(shapes, found);
+        }
+        let found = self.known[&shapes].clone();
+        self.keep([a, b], weight, found);
+        Ok(())
+    }
+
+    /// All ways in which the corners of two faces correspond.
+    fn correspondences(&self, a: u32, b: u32) -> Result<Vec<Correspondence>, Cancelled> {
+        let (p, q) = (&self.outlines[a as usize], &self.outlines[b as usize]);
         let search = cyclic::Search {
             limit: self.options.corner_distance * self.size,
             options: self.options,
             cancel: self.cancel,
         };
         let both = !(self.options.orientation && p.oriented && q.oriented);
+        let mut found = Vec::new();
         for order in [Order::Reversed, Order::Same] {
             // A face is always its own image in the same order: that says nothing of symmetry, unless it has no side.
             if order == Order::Same && a == b && !both {
                 continue;
             }
-            search.matches(&self.loops[a as usize], &self.loops[b as usize], order, &mut keep)?;
+            search.matches(&self.loops[a as usize], &self.loops[b as usize], order, &mut |c| found.push(c))?;
         }
-        Ok(())
+        Ok(found)
+    }
+
+    /// Keeps pairs of two faces while there is room.
+    fn keep(&mut self, faces: [u32; 2], weight: f64, found: impl IntoIterator<Item = Correspondence>) {
+        for correspondence in found.into_iter().take(self.room) {
+            self.room -= 1;
+            self.matches.pairs.push(FacePair { faces, correspondence, weight });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::{BodyId, MeshFace, Occurrence};
+    use crate::geometry::Transform;
+    use crate::stages::corner_filter::{self, corner_filter};
+    use crate::stages::fixture::{prism, solid};
+
+    /// A wedge, and the same body once more, turned a quarter and pushed aside.
+    fn two_wedges() -> Parsed {
+        let mut parsed = solid(&prism(&[[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]], 2.0), &Transform::identity());
+        let [x, y, z] = [crate::geometry::Vector::x(), crate::geometry::Vector::y(), crate::geometry::Vector::z()];
+        let placement = Transform::from_axes(&Point::new(9.0, 1.0, 0.0), &y, &-x, &z);
+        parsed.model.occurrences.push(Occurrence { path: "2".into(), body: BodyId(0), placement });
+        let (points, triangles) = (parsed.mesh.points.len() as u32, parsed.mesh.triangles.len() as u32);
+        let copies: Vec<_> = parsed.mesh.points.iter().map(|p| placement.point(p)).collect();
+        parsed.mesh.points.extend(copies);
+        parsed.mesh.triangles.extend_from_within(..);
+        parsed.mesh.triangles[triangles as usize..].iter_mut().flatten().for_each(|i| *i += points);
+        let moved = |f: &MeshFace| MeshFace {
+            occurrence: 1,
+            points: f.points.start + points..f.points.end + points,
+            triangles: f.triangles.start + triangles..f.triangles.end + triangles,
+            centroid: placement.point(&f.centroid),
+            ..f.clone()
+        };
+        let faces: Vec<_> = parsed.mesh.faces.iter().map(moved).collect();
+        parsed.mesh.faces.extend(faces);
+        parsed
+    }
+
+    #[test]
+    fn faces_of_one_body_in_two_places_match_as_those_of_two_bodies_do() {
+        let parsed = two_wedges();
+        let outlines = corner_filter(&parsed, &corner_filter::Options::default(), &Cancel::new()).unwrap();
+        let matches =
+            |outlines: &[Outline]| pair_match(&parsed, outlines, &Options::default(), &Cancel::new()).unwrap();
+        let shared = matches(&outlines);
+        assert!(outlines.iter().all(|outline| outline.shape.is_some()));
+        assert_eq!(outlines[0].shape, outlines[5].shape);
+        let apart: Vec<_> = outlines.into_iter().map(|outline| Outline { shape: None, ..outline }).collect();
+        assert_eq!(shared.pairs, matches(&apart).pairs);
+        // The two triangles of a wedge and those of the other: each of the four with three others and itself.
+        let triangles = shared.pairs.iter().filter(|p| p.faces.iter().all(|f| f % 5 < 2)).count();
+        assert_eq!(triangles, 6);
     }
 }
