@@ -13,6 +13,7 @@
 //! plane that is kept, some tens for each that is dropped.
 
 pub mod faces;
+mod footprint;
 mod quads;
 pub mod shape;
 pub mod support;

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::footprint::{Footprint, Footprints};
 use super::quads::{Quads, is_near};
 pub use super::tally::Support;
 use super::tally::Tally;
@@ -20,9 +21,6 @@ const STRIDES: [usize; 2] = [5, 8];
 /// Images of whole faces may be off by this share of the radius.
 const SAME: f64 = 0.05;
 
-/// Faces with fewer samples are asked sample by sample.
-const FEW: usize = 2;
-
 /// The surface of a model, ready to be asked whether points lie on it.
 #[derive(Clone, Debug)]
 pub struct SurfaceField {
@@ -30,6 +28,7 @@ pub struct SurfaceField {
     tree: Bvh,
     quads: Quads,
     whole: WholeFaces,
+    footprints: Footprints,
     /// Those of the first round, then those of the second.
     samples: Vec<Sample>,
     /// Samples of the first round.
@@ -68,6 +67,7 @@ impl SurfaceField {
             tree,
             quads: Quads::of(mesh),
             whole: WholeFaces::of(mesh, SAME * radius, !oriented),
+            footprints: Footprints::of(mesh, radius),
             samples,
             coarse,
             last: (OnceLock::new(), count - first),
@@ -123,9 +123,29 @@ impl SurfaceField {
         self.touches((&p, &normal), radius, recent, |_| true)
     }
 
-    /// Whether the isometry maps a sample onto the surface.
-    fn maps(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
-        self.maps_near(isometry, sample, self.radius, recent)
+    /// Whether the isometry maps a sample onto the surface. `image` is of the face that the sample before it on the same
+    /// face was mapped onto.
+    fn maps<'a>(
+        &'a self,
+        isometry: &Isometry,
+        sample: &Sample,
+        recent: &mut Recent,
+        image: &mut Option<&'a Footprint>,
+    ) -> bool {
+        let (p, normal) = (isometry.apply(&sample.point), isometry.rotation * sample.normal);
+        if image.is_some_and(|face| face.holds(&p) && self.agree(&face.normal, &normal)) {
+            return true;
+        }
+        let maps = self.touches((&p, &normal), self.radius, recent, |_| true);
+        if maps {
+            *image = self.latest(recent).and_then(|face| self.footprints.get(face));
+        }
+        maps
+    }
+
+    /// The face found last.
+    fn latest(&self, recent: &Recent) -> Option<PlacedFaceId> {
+        recent.latest().and_then(|position| self.tree.id_of(position)).map(PlacedFaceId)
     }
 
     /// The share of the samples of two rounds that `isometry` maps onto the surface; where it cannot be `needed`,
@@ -187,9 +207,11 @@ impl SurfaceField {
     /// How many samples of one face are mapped.
     fn hits(&self, isometry: &Isometry, samples: &[Sample], recent: &mut Recent) -> usize {
         let first = &samples[0];
-        let whole =
-            samples.len() >= FEW && (self.whole.maps(isometry, first.face) || self.maps_quad(isometry, first, recent));
-        if whole { samples.len() } else { samples.iter().filter(|s| self.maps(isometry, s, recent)).count() }
+        if self.whole.maps(isometry, first.face) || self.maps_quad(isometry, first, recent) {
+            return samples.len();
+        }
+        let mut image = None;
+        samples.iter().filter(|s| self.maps(isometry, s, recent, &mut image)).count()
     }
 
     /// Whether the isometry maps a whole face onto another (or itself).
@@ -200,9 +222,10 @@ impl SurfaceField {
     /// Whether the whole face of a sample is mapped onto one other, which can be told of a quadrilateral by its corners.
     fn maps_quad(&self, isometry: &Isometry, sample: &Sample, recent: &mut Recent) -> bool {
         let Some(corners) = self.quads.get(sample.face) else { return false };
-        let image_of = |recent: &Recent| self.quads.get(PlacedFaceId(self.tree.id_of(recent.latest()?)?));
-        self.maps(isometry, sample, recent)
-            && image_of(recent)
+        self.maps(isometry, sample, recent, &mut None)
+            && self
+                .latest(recent)
+                .and_then(|face| self.quads.get(face))
                 .is_some_and(|image| corners.iter().all(|corner| is_near(image, &isometry.apply(corner), self.radius)))
     }
 
@@ -210,14 +233,15 @@ impl SurfaceField {
     pub fn reaches(&self, isometry: &Isometry, needed: f64) -> Option<f64> {
         let samples = self.samples(Round::Coarse);
         let (mut hits, mut recent) = (0, Recent::default());
-        let mut whole: Vec<Option<bool>> = vec![None; self.whole.count()];
+        // Of each face whether it is mapped as a whole, and else onto what its last sample was mapped.
+        let mut faces: Vec<Option<(bool, Option<&Footprint>)>> = vec![None; self.whole.count()];
         // A step coprime to most counts spreads also the first few samples over the whole surface.
         let step = spread_step(samples.len());
         for n in 1..=samples.len() {
             let sample = &samples[n * step % samples.len()];
-            let maps_face = || self.whole.maps(isometry, sample.face);
-            let is_whole = *whole[sample.face.index()].get_or_insert_with(maps_face);
-            hits += usize::from(is_whole || self.maps(isometry, sample, &mut recent));
+            let maps_face = || (self.whole.maps(isometry, sample.face), None);
+            let (is_whole, image) = faces[sample.face.index()].get_or_insert_with(maps_face);
+            hits += usize::from(*is_whole || self.maps(isometry, sample, &mut recent, image));
             if n >= 8 && n % 4 == 0 {
                 let share = hits as f64 / n as f64;
                 let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();
