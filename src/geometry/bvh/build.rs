@@ -13,21 +13,20 @@ pub(super) struct Item {
     pub index: u32,
 }
 
+/// A box, each end as wide as a vector register: the fourth number means nothing.
 #[derive(Clone, Copy)]
 pub(super) struct Bounds {
-    pub low: [f32; 3],
-    pub high: [f32; 3],
+    pub low: [f32; 4],
+    pub high: [f32; 4],
     pub sides: Sides,
 }
 
 impl Bounds {
-    const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3], sides: 0 };
+    const EMPTY: Self = Self { low: [f32::INFINITY; 4], high: [f32::NEG_INFINITY; 4], sides: 0 };
 
     fn join(&mut self, other: &Self) {
-        for axis in 0..3 {
-            self.low[axis] = lesser(self.low[axis], other.low[axis]);
-            self.high[axis] = greater(self.high[axis], other.high[axis]);
-        }
+        self.low = lesser(self.low, other.low);
+        self.high = greater(self.high, other.high);
         self.sides |= other.sides;
     }
 
@@ -50,29 +49,31 @@ impl Bounds {
     }
 }
 
-/// The lesser of two numbers: one instruction, where `f32::min` also looks for what is none.
-fn lesser(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+/// The lesser ones of numbers: one instruction, where `f32::min` also looks for what is none.
+fn lesser(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
 }
 
-fn greater(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+fn greater(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
 }
 
 /// Adds the node of all items, of which the first is number `first`, and the nodes below it.
 pub(super) fn build(nodes: &mut Vec<Node>, items: &mut [Item], first: u32, level: usize) -> u32 {
     let index = nodes.len();
     nodes.push(Node::EMPTY);
-    let half = cut(items, level);
+    let half = cut(items, level).0;
     let (left, right) = items.split_at_mut(half);
-    let quarters = [cut(left, level), left.len(), half + cut(right, level), half + right.len()];
+    let (a, [first_box, second_box]) = cut(left, level);
+    let (b, [third_box, fourth_box]) = cut(right, level);
+    let ends = [a, left.len(), half + b, half + right.len()];
+    let quarters = ends.into_iter().zip([first_box, second_box, third_box, fourth_box]);
     let mut start = 0;
-    for (i, end) in quarters.into_iter().enumerate() {
+    for (i, (end, bounds)) in quarters.enumerate() {
         let part = &mut items[start..end];
         if part.is_empty() {
             continue;
         }
-        let bounds = Bounds::of(part);
         let (from, count) = (first + start as u32, part.len() as u32);
         let child = if part.len() <= LEAF {
             Child { first: from, count }
@@ -90,68 +91,67 @@ pub(super) fn build(nodes: &mut Vec<Node>, items: &mut [Item], first: u32, level
 }
 
 /// Parts items in two where the boxes come out smallest for their numbers (the surface area heuristic), or, deep down,
-/// in the middle. Returns the size of the first part; what fits in a leaf stays whole.
-fn cut(items: &mut [Item], level: usize) -> usize {
+/// in the middle. Returns the size of the first part and the boxes of both; what fits in a leaf stays whole.
+fn cut(items: &mut [Item], level: usize) -> (usize, [Bounds; 2]) {
     if items.len() <= LEAF {
-        return items.len();
+        return (items.len(), [Bounds::of(items), Bounds::EMPTY]);
     }
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for item in items.iter() {
-        for axis in 0..3 {
-            let middle = item.bounds.middle(axis);
-            (low[axis], high[axis]) = (lesser(low[axis], middle), greater(high[axis], middle));
-        }
+    let (mut low, mut high) = (Bounds::EMPTY.low, Bounds::EMPTY.high);
+    for Item { bounds, .. } in items.iter() {
+        let middle = std::array::from_fn(|i| bounds.low[i] + bounds.high[i]);
+        (low, high) = (lesser(low, middle), greater(high, middle));
     }
     let extent: [f32; 3] = std::array::from_fn(|i| high[i] - low[i]);
     let axis = (0..3).fold(0, |best, i| if extent[i] > extent[best] { i } else { best });
     if level < super::FREE_LEVELS && extent[axis] > 0.0 {
         let scale = BINS as f32 / extent[axis];
-        let bin = |item: &Item| (((item.bounds.middle(axis) - low[axis]) * scale) as usize).min(BINS - 1);
-        let best = best_bin(items, bin);
-        return partition(items, |item| bin(item) <= best);
+        // A byte takes the fewest instructions to be held within its range.
+        let bin = |item: &Item| usize::from(((item.bounds.middle(axis) - low[axis]) * scale) as u8).min(BINS - 1);
+        let (best, bounds) = best_bin(items, bin);
+        return (partition(items, |item| bin(item) <= best), bounds);
     }
     let half = items.len() / 2;
     items.select_nth_unstable_by(half, |a, b| {
         a.bounds.middle(axis).total_cmp(&b.bounds.middle(axis)).then(a.index.cmp(&b.index))
     });
-    half
+    (half, [Bounds::of(&items[..half]), Bounds::of(&items[half..])])
 }
 
-/// The last bin of the first part. The first and the last bin are never empty.
-fn best_bin(items: &[Item], bin: impl Fn(&Item) -> usize) -> usize {
+/// The last bin of the first part, and the boxes of both parts. The first and the last bin are never empty.
+fn best_bin(items: &[Item], bin: impl Fn(&Item) -> usize) -> (usize, [Bounds; 2]) {
     let mut bins = [(Bounds::EMPTY, 0u32); BINS];
     for item in items {
         let (bounds, count) = &mut bins[bin(item)];
         bounds.join(&item.bounds);
         *count += 1;
     }
-    let mut behind = [0.0f32; BINS];
-    let (mut all, mut count) = (Bounds::EMPTY, 0);
+    let mut behind = [(Bounds::EMPTY, 0u32); BINS];
     for i in (1..BINS).rev() {
-        all.join(&bins[i].0);
-        count += bins[i].1;
-        behind[i - 1] = all.half_area() * count as f32;
+        behind[i - 1] = behind[i];
+        behind[i - 1].0.join(&bins[i].0);
+        behind[i - 1].1 += bins[i].1;
     }
-    let (mut all, mut count, mut best) = (Bounds::EMPTY, 0, (f32::INFINITY, BINS / 2));
+    let (mut all, mut count) = (Bounds::EMPTY, 0);
+    let mut best = (f32::INFINITY, BINS / 2, Bounds::EMPTY);
     for i in 0..BINS - 1 {
         all.join(&bins[i].0);
         count += bins[i].1;
-        let cost = all.half_area() * count as f32 + behind[i];
+        let cost = all.half_area() * count as f32 + behind[i].0.half_area() * behind[i].1 as f32;
         if cost < best.0 {
-            best = (cost, i);
+            best = (cost, i, all);
         }
     }
-    best.1
+    (best.1, [best.2, behind[best.1].0])
 }
 
-/// Moves the items that belong to the first part to the front; returns how many.
+/// Moves the items that belong to the first part to the front; returns how many. Which do nobody foresees, the
+/// processor neither: items are moved without a question.
 fn partition(items: &mut [Item], first: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for i in 0..items.len() {
-        if first(&items[i]) {
-            items.swap(i, count);
-            count += 1;
-        }
+        let belongs = first(&items[i]);
+        items.swap(i, count);
+        count += usize::from(belongs);
     }
     count
 }

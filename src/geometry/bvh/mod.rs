@@ -162,8 +162,10 @@ impl Bvh {
 
     fn item(&self, triangle: &Triangle, index: u32) -> Item {
         let [a, b, c] = triangle.corners.each_ref().map(|p| self.local(p));
-        let low = std::array::from_fn(|i| a[i].min(b[i]).min(c[i]) - PAD);
-        let high = std::array::from_fn(|i| a[i].max(b[i]).max(c[i]) + PAD);
+        let end = |pick: fn(f32, f32) -> f32, pad: f32| {
+            std::array::from_fn(|i| if i < 3 { pick(pick(a[i], b[i]), c[i]) + pad } else { 0.0 })
+        };
+        let (low, high) = (end(f32::min, -PAD), end(f32::max, PAD));
         Item { bounds: Bounds { low, high, sides: sides::of(&triangle.normal) }, index }
     }
 
