@@ -133,16 +133,13 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
         let faces = body.shells.iter().flat_map(|&s| &model.shells[s as usize].faces);
         for face in faces.map(|f| &model.faces[f.index()]) {
             match &face.geometry {
-                FaceGeometry::Faceted(facets) => add_chain(&mut points, &facets.points),
+                FaceGeometry::Faceted(facets) => points.extend(weights(&facets.points)),
                 FaceGeometry::Trimmed { surface, .. } if face.loops.iter().all(|l| l.uses.is_empty()) => {
                     add_surface(&mut points, surface);
                 }
                 FaceGeometry::Trimmed { .. } => {
                     let edges = face.loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);
-                    edges.for_each(|e| match &chains[e.index()] {
-                        Some(chain) => add_chain(&mut points, chain),
-                        None => add_chain(&mut points, &model.ends(e)),
-                    });
+                    edges.for_each(|e| points.extend_from_slice(&chains[e.index()]));
                 }
             }
         }
@@ -152,26 +149,30 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
     model.bodies.iter().map(&mut place).collect()
 }
 
-/// Adds points, each with the distance from the one before it as its weight: many on a short edge count little.
-fn add_chain(points: &mut Vec<(Point, f64)>, chain: &[Point]) {
-    let mut before = chain.first();
-    for p in chain {
-        points.push((*p, before.map_or(0.0, |q| (p - q).norm())));
-        before = Some(p);
-    }
+/// Points, each with the distance from the one before it as its weight: many on a short edge count little.
+fn weights(chain: &[Point]) -> impl Iterator<Item = (Point, f64)> + '_ {
+    let before = chain.first().into_iter().chain(chain);
+    chain.iter().zip(before).map(|(p, q)| (*p, (p - q).norm()))
 }
 
-/// Points of an edge that has a curve.
-fn chain(model: &Model, id: EdgeId, span: Option<[f64; 2]>) -> Option<[Point; EDGE_SAMPLES + 1]> {
-    let ([start, end], [from, to]) = (model.ends(id), span?);
-    let curve = model.edges[id.index()].curve.as_deref()?;
-    let period = curve.period();
-    let at = |i: usize| from + (to - from) * i as f64 / EDGE_SAMPLES as f64;
-    Some(std::array::from_fn(|i| match i {
-        0 => start,
-        EDGE_SAMPLES => end,
-        _ => curve.point(curve.wrap(at(i), period)),
-    }))
+/// Points of an edge with their weights.
+fn chain(model: &Model, id: EdgeId, span: Option<[f64; 2]>) -> [(Point, f64); EDGE_SAMPLES + 1] {
+    let [start, end] = model.ends(id);
+    let curve = model.edges[id.index()].curve.as_deref().zip(span).map(|(curve, span)| (curve, curve.period(), span));
+    let at = |share: f64| match &curve {
+        Some((curve, period, [from, to])) => curve.point(curve.wrap(from + (to - from) * share, *period)),
+        None => start + (end - start) * share,
+    };
+    let mut before = start;
+    std::array::from_fn(|i| {
+        let p = match i {
+            0 => start,
+            EDGE_SAMPLES => end,
+            _ => at(i as f64 / EDGE_SAMPLES as f64),
+        };
+        let weight = (p - std::mem::replace(&mut before, p)).norm();
+        (p, weight)
+    })
 }
 
 /// The poles of a whole sphere or torus; a grid over the domain of others that have one.
@@ -185,7 +186,7 @@ fn add_surface(points: &mut Vec<(Point, f64)>, surface: &Surface) {
                 let share = |a: f64, b: f64, i: usize| a + (b - a) * i as f64 / EDGE_SAMPLES as f64;
                 let nodes = (0..=EDGE_SAMPLES).flat_map(|i| (0..=EDGE_SAMPLES).map(move |j| (i, j)));
                 let grid: Vec<_> = nodes.map(|(i, j)| other.point(share(u0, u1, i), share(v0, v1, j))).collect();
-                add_chain(points, &grid);
+                points.extend(weights(&grid));
             }
             return;
         }

@@ -13,6 +13,7 @@ use crate::stages::parse::sound;
 /// How deep curves may be made of curves.
 const DEEPEST_CURVE: u32 = 16;
 
+const ON_SURFACE: &[Kind] = &[Kind::RepresentationItem, Kind::SurfaceCurve];
 const TRIMMED: &[Kind] = &[Kind::RepresentationItem, Kind::TrimmedCurve];
 const CONIC: &[Kind] =
     &[Kind::RepresentationItem, Kind::Conic, Kind::Circle, Kind::Ellipse, Kind::Parabola, Kind::Hyperbola];
@@ -23,6 +24,23 @@ impl Geometry<'_> {
         let curve = self.nested_curve(id, 0)?;
         sound::curve(&curve).map_err(|why| Fault::new(id, why))?;
         Ok(curve)
+    }
+
+    /// Whether a curve is a line: of an edge along it, that tells no more than its ends do.
+    pub fn is_line(&self, mut id: u64) -> bool {
+        for _ in 0..=DEEPEST_CURVE {
+            let Ok(record) = self.file.record(id) else { return false };
+            let basis = match record.kind {
+                Kind::Line => return true,
+                Kind::SurfaceCurve | Kind::SeamCurve | Kind::IntersectionCurve => {
+                    record.fields(ON_SURFACE).skip_many(1).reference()
+                }
+                _ => return false,
+            };
+            let Ok(basis) = basis else { return false };
+            id = basis;
+        }
+        false
     }
 
     /// A curve that others are made of.
@@ -57,8 +75,7 @@ impl Geometry<'_> {
                 self.composite(record, depth)?
             }
             Kind::SurfaceCurve | Kind::SeamCurve | Kind::IntersectionCurve => {
-                let mut cursor = record.fields(&[Kind::RepresentationItem, Kind::SurfaceCurve]);
-                self.nested_curve(cursor.skip_many(1).reference()?, depth + 1)?
+                self.nested_curve(record.fields(ON_SURFACE).skip_many(1).reference()?, depth + 1)?
             }
             Kind::BoundedSurfaceCurve if record.kind != Kind::Complex => {
                 self.nested_curve(record.fields(&[]).skip_many(1).reference()?, depth + 1)?

@@ -318,12 +318,15 @@ impl<'a> Builder<'a> {
         let start = self.vertex(cursor.skip_many(1).reference()?)?;
         let end = self.vertex(cursor.reference()?)?;
         let geometry = cursor.optional_reference()?;
+        // Half of the entities of many files are lines with their points and directions: none is looked at.
+        let straight = is_curve && geometry.is_some_and(|curve| self.geometry.is_line(curve));
         let (curve, same_sense) = match geometry {
+            _ if straight => (None, cursor.flag().unwrap_or(true)),
             Some(curve) if is_curve => (self.edge_curve(record, curve), cursor.flag().unwrap_or(true)),
             Some(parent) if record.is(Kind::Subedge) => self.parent_curve(parent, depth)?,
             _ => (None, true),
         };
-        if curve.is_none() && start == end {
+        if curve.is_none() && start == end && !straight {
             return Err(record.fault("a closed edge without a curve"));
         }
         let shaped = curve.is_some();
