@@ -16,6 +16,8 @@ pub mod topology;
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use crate::geometry::{Isometry, Point, Transform, Vector};
 pub use curve::Curve;
 pub use mesh::{Mesh, MeshFace, PlacedFaceId};
@@ -109,6 +111,12 @@ pub struct EdgeUse {
     pub forward: bool,
 }
 
+/// The edges of a loop: for most no more than can be kept in place.
+pub type Uses = SmallVec<[EdgeUse; 4]>;
+
+/// The loops of a face: one for most.
+pub type Loops = SmallVec<[FaceLoop; 1]>;
+
 /// A closed chain of edges, or a single vertex (VERTEX_LOOP: the pole of a sphere, the apex of a cone).
 ///
 /// Loops are given as the face bound orients them: along the loop, with the face normal up, the face's inside is
@@ -118,7 +126,7 @@ pub struct FaceLoop {
     /// Number of the entity in the file.
     pub entity: u64,
     /// The edges in order, each starting where the one before ends.
-    pub uses: Vec<EdgeUse>,
+    pub uses: Uses,
     /// The vertex of a vertex loop (then `uses` is empty).
     pub pole: Option<VertexId>,
     /// Whether the file calls this loop the outer one (FACE_OUTER_BOUND); often it does not say.
@@ -156,7 +164,7 @@ pub struct Face {
     /// What it is made of.
     pub geometry: FaceGeometry,
     /// Empty: the whole surface (a sphere or torus without bounds).
-    pub loops: Vec<FaceLoop>,
+    pub loops: Loops,
     /// Position in [`Model::shells`].
     pub shell: u32,
 }

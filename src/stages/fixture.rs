@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
+use smallvec::smallvec;
 
 use super::parse::Parsed;
 use crate::brep::measure::Measures;
@@ -81,7 +82,7 @@ impl Builder {
         let x = crate::geometry::any_perpendicular(&normal);
         let plane = Surface::Plane(Placement { origin: polygon[0], x, y: normal.cross(&x), z: normal });
         let geometry = FaceGeometry::Trimmed { surface: Arc::new(plane), same_sense: true };
-        self.model.faces.push(Face { entity, geometry, loops: vec![face_loop], shell: 0 });
+        self.model.faces.push(Face { entity, geometry, loops: smallvec![face_loop], shell: 0 });
         self.mesh_face(FaceId(index), polygon);
     }
 

@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::Few;
 use super::chart::{Chart, Uv};
 use super::edges::EdgeLines;
 use crate::brep::{EdgeId, EdgeUse, Face};
@@ -84,7 +85,7 @@ pub(super) fn rectangle<'a>(points: impl Iterator<Item = &'a Uv>) -> [f64; 4] {
 #[derive(Clone, Default)]
 pub(super) struct Border {
     /// One closed polyline for each loop, with the middles of the true edges.
-    pub loops: Vec<[Vec<Point>; 2]>,
+    pub loops: Few<[Vec<Point>; 2]>,
     /// A point on each seam: an edge that a loop runs along both ways, so that the face lies on both its sides.
     pub seams: Vec<Point>,
 }
@@ -96,7 +97,7 @@ impl Border {
         if uses.map(|u| lines.line(u.edge).0.len()).sum::<usize>() > MOST_POINTS {
             return None;
         }
-        let (mut chains, mut seams, mut loops) = (Vec::new(), Vec::new(), Vec::with_capacity(face.loops.len()));
+        let (mut chains, mut seams, mut loops) = (Vec::new(), Vec::new(), Few::with_capacity(face.loops.len()));
         for face_loop in &face.loops {
             if first_pair(&face_loop.uses).is_none() && !face_loop.uses.iter().any(|u| degenerate[u.edge.index()]) {
                 loops.push(polyline(&face_loop.uses, lines));
@@ -176,7 +177,7 @@ pub(super) struct Unmapped {
 }
 
 /// Maps closed polylines into the parameter space of the chart. Points further than `far` (mm) from the surface are an error.
-pub(super) fn paths(chart: &Chart, loops: Vec<[Vec<Point>; 2]>, size: f64, far: f64) -> Result<Vec<Path>, Unmapped> {
+pub(super) fn paths(chart: &Chart, loops: Few<[Vec<Point>; 2]>, size: f64, far: f64) -> Result<Few<Path>, Unmapped> {
     loops.into_iter().map(|[points, middles]| path(chart, points, middles, size, far)).collect()
 }
 

@@ -1,5 +1,8 @@
 //! A face's part of its parameter space -> triangles.
 
+use smallvec::smallvec;
+
+use super::Few;
 use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
 use super::columns::Columns;
@@ -20,7 +23,7 @@ pub(super) struct Patch {
     /// Counter-clockwise in parameter space.
     pub triangles: Vec<[u32; 3]>,
     /// For each path: 1 where the face is on its left, -1 where it is on its right.
-    pub sides: Vec<f64>,
+    pub sides: Few<f64>,
 }
 
 impl Patch {
@@ -108,18 +111,18 @@ fn gather_inside(chart: &Chart, paths: &mut [Path], outer: usize) {
 
 /// The paths of a face laid out as rings, the outer one first.
 struct Layout {
-    order: Vec<usize>,
-    rings: Vec<usize>,
-    sides: Vec<f64>,
+    order: Few<usize>,
+    rings: Few<usize>,
+    sides: Few<f64>,
     rectangle: [f64; 4],
     area: f64,
 }
 
 impl Layout {
     fn new(paths: &[Path], outer: usize) -> Option<Self> {
-        let order: Vec<usize> = std::iter::once(outer).chain((0..paths.len()).filter(|&i| i != outer)).collect();
-        let mut sides = vec![1.0; paths.len()];
-        let (mut rings, mut count, mut area) = (Vec::new(), 0, 0.0);
+        let order: Few<usize> = std::iter::once(outer).chain((0..paths.len()).filter(|&i| i != outer)).collect();
+        let mut sides = smallvec![1.0; paths.len()];
+        let (mut rings, mut count, mut area) = (Few::new(), 0, 0.0);
         for &i in &order {
             let signed = paths[i].signed_area();
             sides[i] = if (signed > 0.0) == (i == outer) { 1.0 } else { -1.0 };

@@ -1,5 +1,6 @@
 //! One face -> its triangles and integrals, in the coordinates of its body.
 
+use super::Few;
 use super::boundary::{self, Border, Path};
 use super::chart::{Chart, Uv};
 use super::domain::{self, Patch};
@@ -160,7 +161,7 @@ fn rim(chart: &Chart, surface: &Surface) -> Option<Path> {
 fn filled(
     context: &Context,
     face: &Face,
-    borders: Vec<[Vec<Point>; 2]>,
+    borders: Few<[Vec<Point>; 2]>,
     reference: &Point,
     why: &str,
 ) -> Result<FaceMesh, String> {

@@ -1,6 +1,7 @@
 //! Faces whose edges do not fit their surface: the border is filled with a plane, so that silhouettes stay closed.
 
-use super::boundary::{Path, paths};
+use super::Few;
+use super::boundary::paths;
 use super::chart::Chart;
 use super::domain::{Patch, triangulate};
 use super::face::Context;
@@ -8,7 +9,7 @@ use crate::brep::{Placement, Surface};
 use crate::geometry::{Point, Vector, any_perpendicular, isometry::mean};
 
 /// Fills the border; `None` where it has no extent.
-pub(super) fn planar_fill(borders: Vec<[Vec<Point>; 2]>, context: &Context) -> Option<Patch> {
+pub(super) fn planar_fill(borders: Few<[Vec<Point>; 2]>, context: &Context) -> Option<Patch> {
     let size = context.size;
     let normal = borders.iter().map(|b| area_vector(&b[0])).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let z = normal.try_normalize(1e-12 * size * size)?;
@@ -17,7 +18,7 @@ pub(super) fn planar_fill(borders: Vec<[Vec<Point>; 2]>, context: &Context) -> O
     let surface = Surface::Plane(Placement { origin: mean(&largest[0]), x, y: z.cross(&x), z });
     let mut chart = Chart::new(&surface, true, &[], size);
     chart.cancel = Some(context.cancel);
-    let mut paths: Vec<Path> = paths(&chart, borders, size, f64::INFINITY).ok()?;
+    let mut paths = paths(&chart, borders, size, f64::INFINITY).ok()?;
     triangulate(&chart, &mut paths, &context.fineness, true)
 }
 

@@ -39,6 +39,7 @@ mod triangulate;
 mod tests;
 
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
 use super::{EdgeId, Face, Mesh, Model, Skipped};
 use crate::cancel::{Cancel, Cancelled};
@@ -46,6 +47,9 @@ use crate::geometry::Point;
 use edges::{EdgeLines, Fineness};
 use face::{Context, FaceMesh};
 use place::Place;
+
+/// What a face has one or two of in most cases, such as loops.
+type Few<T> = SmallVec<[T; 2]>;
 
 /// How finely models are tessellated.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

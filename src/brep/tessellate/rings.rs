@@ -1,5 +1,6 @@
 //! The wall between two rings that go round a straight-lined surface once each: a strip that needs no cut.
 
+use super::Few;
 use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
@@ -34,7 +35,7 @@ pub(super) fn level(ring: &Path) -> f64 {
 }
 
 /// On which side of each ring the face lies: of the lower one on the left, where that runs towards growing parameters.
-pub(super) fn sides(rings: &[Path], lower: Option<&Path>) -> Vec<f64> {
+pub(super) fn sides(rings: &[Path], lower: Option<&Path>) -> Few<f64> {
     let is_lower = |ring: &Path| lower.is_some_and(|lower| std::ptr::eq(lower, ring));
     rings.iter().map(|ring| f64::from(if is_lower(ring) { ring.winding[0] } else { -ring.winding[0] })).collect()
 }

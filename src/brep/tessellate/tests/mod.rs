@@ -8,8 +8,8 @@ use super::*;
 use crate::brep::measure::measure;
 use crate::brep::nurbs::NurbsSurface;
 use crate::brep::{
-    Body, BodyId, Curve, Edge, EdgeUse, FaceGeometry, FaceId, FaceLoop, Occurrence, Placement, Shell, Surface, Vertex,
-    VertexId,
+    Body, BodyId, Curve, Edge, EdgeUse, FaceGeometry, FaceId, FaceLoop, Occurrence, Placement, Shell, Surface, Uses,
+    Vertex, VertexId,
 };
 use crate::geometry::{Isometry, Plane, Transform, Vector};
 use std::collections::BTreeMap;
@@ -71,7 +71,7 @@ impl Builder {
 
     /// A loop that is only a point.
     fn vertex_loop(&mut self, face: usize, vertex: VertexId) {
-        self.0.faces[face].loops.push(FaceLoop { entity: 0, uses: vec![], pole: Some(vertex), outer: false });
+        self.0.faces[face].loops.push(FaceLoop { entity: 0, uses: Uses::new(), pole: Some(vertex), outer: false });
     }
 
     /// Area of the faces, and of their triangles within the given share of it.

@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 
 use super::curves::Piece;
 use super::trimmed::{RawFace, RawLoop};
-use crate::brep::{Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Model, Vertex, VertexId};
+use crate::brep::{Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Model, Uses, Vertex, VertexId};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Aabb, Point};
 use crate::stages::parse::cut;
@@ -65,7 +65,7 @@ impl<'a> Stitcher<'a> {
     fn face_loop(&mut self, raw: RawLoop) -> Option<FaceLoop> {
         let RawLoop { entity, pieces, reversed } = raw;
         let senses = senses(&pieces, self.tolerance);
-        let mut uses: Vec<EdgeUse> = Vec::with_capacity(pieces.len());
+        let mut uses = Uses::with_capacity(pieces.len());
         for (piece, forward) in pieces.into_iter().zip(senses) {
             uses.extend(self.edge(piece).map(|used| EdgeUse { forward: used.forward == forward, ..used }));
         }

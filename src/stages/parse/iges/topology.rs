@@ -6,7 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::file::{File, Record};
 use crate::brep::{
-    Body, BodyId, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Model, Shell, Surface, Vertex, VertexId,
+    Body, BodyId, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Loops, Model, Shell, Surface, Uses,
+    Vertex, VertexId,
 };
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Point;
@@ -130,7 +131,7 @@ impl<'a> Builder<'a> {
         let count = fields.count()?;
         let has_outer = fields.flag()?;
         let ids = fields.pointers(count)?;
-        let mut loops = Vec::with_capacity(ids.len());
+        let mut loops = Loops::with_capacity(ids.len());
         for (i, id) in ids.into_iter().enumerate() {
             let mut face_loop = self.face_loop(id)?;
             face_loop.outer = has_outer && i == 0;
@@ -161,7 +162,7 @@ impl<'a> Builder<'a> {
         let record = self.file.expect(entity, 508, "a loop was expected")?;
         let mut fields = record.fields();
         let count = fields.count()?;
-        let mut face_loop = FaceLoop { entity, uses: Vec::with_capacity(count), pole: None, outer: false };
+        let mut face_loop = FaceLoop { entity, uses: Uses::with_capacity(count), pole: None, outer: false };
         for _ in 0..count {
             let (kind, list, index) = (fields.integer()?, fields.pointer()?, fields.integer()?);
             let forward = fields.flag()?;

@@ -9,7 +9,8 @@ use super::locations::{Locations, Place};
 use super::shapes::{Data, Kind, Orientation, Use};
 use super::surfaces::Sheet;
 use crate::brep::{
-    Body, BodyId, Curve, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Facets, Model, Shell, Surface, VertexId,
+    Body, BodyId, Curve, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Facets, Loops, Model, Shell, Surface,
+    VertexId,
 };
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Aabb, Transform};
@@ -176,7 +177,7 @@ impl<'a> Builder<'a> {
         if surface == 0 && triangulation > 0 {
             let facets = self.facets(face, triangulation)?;
             let geometry = FaceGeometry::Faceted(Arc::new(facets));
-            return Ok(Face { entity, geometry, loops: Vec::new(), shell });
+            return Ok(Face { entity, geometry, loops: Loops::new(), shell });
         }
         let numbered = self.locations.numbered(location).map_err(fault)?;
         let place = self.locations.compose(face.place, numbered).map_err(fault)?;
@@ -237,8 +238,8 @@ impl<'a> Builder<'a> {
     }
 
     /// The loops of a face's wires, with the face on the left.
-    fn loops(&mut self, face: &Seen) -> Read<Vec<FaceLoop>> {
-        let mut loops = Vec::new();
+    fn loops(&mut self, face: &Seen) -> Read<Loops> {
+        let mut loops = Loops::new();
         for used in self.file.shapes.uses_of(face.shape) {
             if self.kind(used.shape) == Kind::Wire && used.orientation != Orientation::Loose {
                 let wire = self.seen(face, used).ok_or_else(|| Fault::new(face.entity(), "a loop in no place"))?;
@@ -249,7 +250,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The loops of one wire: one, or several where it is not connected; none where all its edges are loose.
-    fn wire_loops(&mut self, wire: &Seen) -> Read<Vec<FaceLoop>> {
+    fn wire_loops(&mut self, wire: &Seen) -> Read<Loops> {
         let (mut uses, mut pole) = (Vec::new(), None);
         let parts = self.file.shapes.uses_of(wire.shape);
         self.spend(wire.entity(), parts.len())?;
@@ -266,7 +267,7 @@ impl<'a> Builder<'a> {
         if wire.reversed {
             uses.reverse();
         }
-        let face_loop = |uses, pole| FaceLoop { entity: wire.entity(), uses, pole, outer: false };
+        let face_loop = |uses: Vec<_>, pole| FaceLoop { entity: wire.entity(), uses: uses.into(), pole, outer: false };
         if uses.is_empty() {
             return Ok(pole.map(|pole| face_loop(Vec::new(), Some(pole))).into_iter().collect());
         }

@@ -7,7 +7,7 @@ use memchr::memchr;
 use super::effort::Effort;
 use super::keyword::Kind;
 use super::lexer::{kind_at, number, skip_space};
-use super::records::File;
+use super::records::{File, Ids};
 use crate::stages::parse::fault::{Fault, Read};
 
 /// A place in the parameters of an instance; each call reads one parameter and the comma behind it.
@@ -296,8 +296,8 @@ impl<'a, 'r> Cursor<'a, 'r> {
     }
 
     /// A list of references.
-    pub fn references(&mut self) -> Read<Vec<u64>> {
-        let mut ids = Vec::new();
+    pub fn references(&mut self) -> Read<Ids> {
+        let mut ids = Ids::new();
         self.list(|c| {
             ids.push(c.reference()?);
             Ok(())

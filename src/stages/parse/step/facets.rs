@@ -8,7 +8,7 @@ use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::records::Record;
 use super::topology::{Builder, LooseFace};
-use crate::brep::{FaceGeometry, Facets};
+use crate::brep::{FaceGeometry, Facets, Loops};
 use crate::geometry::{Point, Vector};
 use crate::stages::parse::fault::{Fault, Read};
 
@@ -54,7 +54,7 @@ impl Builder<'_> {
         }
         self.geometry.spend(id, triangles.len())?;
         let facets = facets(&record, &coordinates, &used, &triangles)?;
-        Ok(LooseFace { entity: id, geometry: FaceGeometry::Faceted(Arc::new(facets)), loops: Vec::new() })
+        Ok(LooseFace { entity: id, geometry: FaceGeometry::Faceted(Arc::new(facets)), loops: Loops::new() })
     }
 
     /// COORDINATES_LIST, in mm.

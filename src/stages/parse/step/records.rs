@@ -2,11 +2,16 @@
 
 use std::borrow::Cow;
 
+use smallvec::SmallVec;
+
 use super::cursor::Cursor;
 use super::keyword::Kind;
 use super::lexer::{Entry, Table, kind_at, skip_space};
 use crate::geometry::Vector;
 use crate::stages::parse::fault::{Fault, Read};
+
+/// Numbers of instances: most lists name few.
+pub(super) type Ids = SmallVec<[u64; 8]>;
 
 /// The bytes of a file with the table of its instances.
 #[derive(Clone, Copy, Debug)]

@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
+use smallvec::smallvec;
 
 use super::keyword::Kind;
 use super::known::{Known, Made};
 use super::placement::{Geometry, orthonormal};
 use super::records::Record;
 use super::units::Units;
-use crate::brep::{Curve, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceLoop, Model, Surface, Vertex, VertexId};
+use crate::brep::{
+    Curve, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceLoop, Loops, Model, Surface, Uses, Vertex, VertexId,
+};
 use crate::geometry::{Point, Vector};
 use crate::stages::parse::fault::{Fault, Read};
 use crate::stages::parse::notes::Notes;
@@ -41,7 +44,7 @@ pub(super) struct Builder<'a> {
 pub(super) struct LooseFace {
     pub entity: u64,
     pub geometry: FaceGeometry,
-    pub loops: Vec<FaceLoop>,
+    pub loops: Loops,
 }
 
 impl<'a> Builder<'a> {
@@ -152,7 +155,7 @@ impl<'a> Builder<'a> {
     /// A bounded surface as a face without loops.
     pub(super) fn whole_surface(&mut self, id: u64) -> Read<LooseFace> {
         let geometry = FaceGeometry::Trimmed { surface: self.surface(id)?, same_sense: true };
-        Ok(LooseFace { entity: id, geometry, loops: Vec::new() })
+        Ok(LooseFace { entity: id, geometry, loops: Loops::new() })
     }
 
     fn surface(&mut self, id: u64) -> Read<Arc<Surface>> {
@@ -164,7 +167,7 @@ impl<'a> Builder<'a> {
         Ok(surface)
     }
 
-    fn bounds(&mut self, face: u64, ids: &[u64]) -> Read<Vec<FaceLoop>> {
+    fn bounds(&mut self, face: u64, ids: &[u64]) -> Read<Loops> {
         self.geometry.spend(face, ids.len())?;
         ids.iter().map(|id| self.bound(*id)).collect()
     }
@@ -188,7 +191,7 @@ impl<'a> Builder<'a> {
 
     fn face_loop(&mut self, id: u64) -> Read<FaceLoop> {
         let record = self.record(id)?;
-        let mut face_loop = FaceLoop { entity: id, uses: Vec::new(), pole: None, outer: false };
+        let mut face_loop = FaceLoop { entity: id, uses: Uses::new(), pole: None, outer: false };
         if record.is(Kind::VertexLoop) {
             let mut cursor = record.fields(&[Kind::RepresentationItem, Kind::VertexLoop]);
             face_loop.pole = Some(self.vertex(cursor.skip_many(1).reference()?)?);
@@ -223,12 +226,12 @@ impl<'a> Builder<'a> {
         let curve = Some(Arc::new(curve));
         let edge = self.push_edge(Edge { entity: id, curve, start: vertex, end: vertex, same_sense: true });
         let outer = self.record(id)?.is(Kind::OuterBoundaryCurve);
-        Ok(FaceLoop { entity: id, uses: vec![EdgeUse { edge, forward: true }], pole: None, outer })
+        Ok(FaceLoop { entity: id, uses: smallvec![EdgeUse { edge, forward: true }], pole: None, outer })
     }
 
     /// The straight edges between the points of a POLY_LOOP; each pair of points has one edge in all loops.
-    fn poly_loop(&mut self, record: &Record, ids: &[u64]) -> Read<Vec<EdgeUse>> {
-        let mut uses = Vec::with_capacity(ids.len());
+    fn poly_loop(&mut self, record: &Record, ids: &[u64]) -> Read<Uses> {
+        let mut uses = Uses::with_capacity(ids.len());
         for (&from, &to) in ids.iter().zip(ids.iter().cycle().skip(1)) {
             if from != to {
                 uses.push(self.straight_edge(record.id, from, to)?);
