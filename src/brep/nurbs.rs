@@ -54,7 +54,7 @@ struct Basis<const N: usize> {
 
 /// Calls a method for up to the `order`-th derivatives with the smallest table that holds this degree.
 macro_rules! for_degree {
-    ($degree:expr, $order:literal, $self:ident.$method:ident($($argument:expr),*)) => {
+    ($degree:expr, $order:tt, $self:ident.$method:ident($($argument:expr),*)) => {
         match $degree {
             0..=3 => $self.$method::<4, $order>($($argument),*),
             4..=7 => $self.$method::<8, $order>($($argument),*),
@@ -96,24 +96,27 @@ fn last_filled_span(knots: &[f64], degree: usize, mut span: usize) -> usize {
 /// Basis functions of degree q - 1 -> degree q, in place.
 fn raise<const N: usize>(knots: &[f64], span: usize, q: usize, t: f64, n: &mut [f64; N]) {
     let mut saved = 0.0;
-    for r in 0..q {
-        let (low, high) = (knots[span + 1 + r - q], knots[span + 1 + r]);
-        let share = if high > low { n[r] / (high - low) } else { 0.0 };
-        n[r] = saved + (high - t) * share;
-        saved = (t - low) * share;
+    for (n, [low, high]) in n.iter_mut().zip(supports(knots, span, q)) {
+        let share = if high > low { *n / (high - low) } else { 0.0 };
+        (*n, saved) = (saved + (high - t) * share, (t - low) * share);
     }
     n[q] = saved;
 }
 
+/// Where each of the functions of degree q - 1 begins and ends.
+fn supports(knots: &[f64], span: usize, q: usize) -> impl Iterator<Item = [f64; 2]> + '_ {
+    let (begins, ends) = (&knots[span + 1 - q..=span], &knots[span + 1..=span + q]);
+    begins.iter().zip(ends).map(|(begin, end)| [*begin, *end])
+}
+
 /// Functions (or their derivatives) of degree q - 1 -> derivatives of those of degree q.
 fn differentiate<const N: usize>(knots: &[f64], span: usize, q: usize, n: &[f64; N]) -> [f64; N] {
-    let mut out = [0.0; N];
-    for r in 0..q {
-        let width = knots[span + 1 + r] - knots[span + 1 + r - q];
-        let share = if width > 0.0 { q as f64 * n[r] / width } else { 0.0 };
-        out[r] -= share;
-        out[r + 1] += share;
+    let (mut out, mut saved) = ([0.0; N], 0.0);
+    for ((out, n), [low, high]) in out.iter_mut().zip(n).zip(supports(knots, span, q)) {
+        let share = if high > low { q as f64 * n / (high - low) } else { 0.0 };
+        (*out, saved) = (saved - share, share);
     }
+    out[q] = saved;
     out
 }
 
@@ -198,17 +201,12 @@ impl NurbsSurface {
 
     /// Point and derivatives up to second order; parameters outside the domain are clamped.
     pub fn jet(&self, u: f64, v: f64) -> Jet {
-        for_degree!(self.degree_u.max(self.degree_v), 2, self.jet_below(u, v))
+        self.jet_to::<2>(u, v)
     }
 
-    /// As [`Self::jet`] without the second derivatives, which stay zero.
-    pub(super) fn tangents(&self, u: f64, v: f64) -> Jet {
-        for_degree!(self.degree_u.max(self.degree_v), 1, self.jet_below(u, v))
-    }
-
-    /// The point alone, as [`Self::jet`] has it.
-    pub(super) fn point(&self, u: f64, v: f64) -> Point {
-        for_degree!(self.degree_u.max(self.degree_v), 0, self.jet_below(u, v)).point
+    /// As [`Self::jet`] with derivatives up to `ORDER`; the others stay zero.
+    pub(super) fn jet_to<const ORDER: usize>(&self, u: f64, v: f64) -> Jet {
+        for_degree!(self.degree_u.max(self.degree_v), ORDER, self.jet_below(u, v))
     }
 
     /// For degrees below `N`.
@@ -235,8 +233,7 @@ impl NurbsSurface {
         let [_, dv, dvv] = divide(&a[0], &a[3], &a[5]);
         let point = Point::from(p);
         if ORDER < 2 {
-            let zero = Vector::zeros();
-            return Jet { point, du, dv, duu: zero, duv: zero, dvv: zero };
+            return Jet { du, dv, ..Jet::at(point) };
         }
         let duv = (a[4].0 - du * a[3].1 - dv * a[1].1 - p * a[4].1) / a[0].1;
         Jet { point, du, dv, duu, duv, dvv }
@@ -331,7 +328,7 @@ mod tests {
         assert_eq!(jet.point, Point::new(0.5, 0.5, 0.25));
         assert_eq!(jet.du, Vector::new(1.0, 0.0, 0.5));
         assert_eq!(jet.duv, Vector::z());
-        assert_eq!(surface.tangents(0.5, 0.5), Jet { duv: Vector::zeros(), ..jet });
+        assert_eq!(surface.jet_to::<1>(0.5, 0.5), Jet { duv: Vector::zeros(), ..jet });
         assert_eq!(surface.spans(), [1, 1]);
     }
 }

@@ -93,6 +93,12 @@ pub struct Jet {
 }
 
 impl Jet {
+    /// A point without its derivatives: they are zero.
+    pub(super) fn at(point: Point) -> Self {
+        let zero = Vector::zeros();
+        Self { point, du: zero, dv: zero, duu: zero, duv: zero, dvv: zero }
+    }
+
     /// S_u x S_v: the surface normal times the area element.
     pub fn normal(&self) -> Vector {
         self.du.cross(&self.dv)
@@ -139,37 +145,38 @@ pub enum SurfaceKind {
 impl Surface {
     /// The point at (u, v).
     pub fn point(&self, u: f64, v: f64) -> Point {
-        match self {
-            Self::Nurbs(nurbs) => nurbs.point(u, v),
-            _ => self.jet(u, v).point,
-        }
+        self.jet_to::<0>(u, v).point
     }
 
     /// Point and first derivatives at (u, v); whether the second ones are there, is left open.
     pub(super) fn tangents(&self, u: f64, v: f64) -> Jet {
-        if let Self::Nurbs(nurbs) = self { nurbs.tangents(u, v) } else { self.jet(u, v) }
+        self.jet_to::<1>(u, v)
     }
 
     /// Point and derivatives at (u, v); bounded surfaces clamp the parameters to their domain.
     pub fn jet(&self, u: f64, v: f64) -> Jet {
+        self.jet_to::<2>(u, v)
+    }
+
+    /// With derivatives up to `ORDER` and perhaps more.
+    fn jet_to<const ORDER: usize>(&self, u: f64, v: f64) -> Jet {
         match self {
             Self::Plane(placement) => plane(placement, u, v),
-            Self::Cylinder { placement, radius } => turned(placement, u, [*radius, 0.0, 0.0], [v, 1.0, 0.0]),
+            Self::Cylinder { placement, radius } => turned::<ORDER>(placement, u, [*radius, 0.0, 0.0], [v, 1.0, 0.0]),
             Self::Cone { placement, radius, half_angle } => {
                 let slope = half_angle.tan();
-                turned(placement, u, [radius + v * slope, slope, 0.0], [v, 1.0, 0.0])
+                turned::<ORDER>(placement, u, [radius + v * slope, slope, 0.0], [v, 1.0, 0.0])
             }
-            Self::Sphere { placement, radius } => ring(placement, 0.0, *radius, u, v),
-            Self::Torus { placement, major, minor } => ring(placement, *major, *minor, u, v),
-            Self::Nurbs(nurbs) => nurbs.jet(u, v),
+            Self::Sphere { placement, radius } => ring::<ORDER>(placement, 0.0, *radius, u, v),
+            Self::Torus { placement, major, minor } => ring::<ORDER>(placement, *major, *minor, u, v),
+            Self::Nurbs(nurbs) => nurbs.jet_to::<ORDER>(u, v),
             Self::Revolution { profile, axis } => revolution(profile, axis, u, v),
             Self::Extrusion { profile, direction } => {
                 let [p, du, duu] = profile.derivatives(u);
-                let zero = Vector::zeros();
-                Jet { point: Point::from(p + direction * v), du, dv: *direction, duu, duv: zero, dvv: zero }
+                Jet { du, dv: *direction, duu, ..Jet::at(Point::from(p + direction * v)) }
             }
             Self::Offset { basis, distance } => offset(basis, *distance, u, v),
-            Self::Rectangular { basis, .. } => basis.jet(u, v),
+            Self::Rectangular { basis, .. } => basis.jet_to::<ORDER>(u, v),
         }
     }
 
@@ -277,30 +284,29 @@ impl Surface {
 }
 
 fn plane(placement: &Placement, u: f64, v: f64) -> Jet {
-    let zero = Vector::zeros();
-    let point = placement.point(u, v, 0.0);
-    Jet { point, du: placement.x, dv: placement.y, duu: zero, duv: zero, dvv: zero }
+    Jet { du: placement.x, dv: placement.y, ..Jet::at(placement.point(u, v, 0.0)) }
 }
 
 /// A profile given as distance from the axis and height, each with two derivatives by v, turned by u.
-fn turned(placement: &Placement, u: f64, rho: [f64; 3], height: [f64; 3]) -> Jet {
+fn turned<const ORDER: usize>(placement: &Placement, u: f64, rho: [f64; 3], height: [f64; 3]) -> Jet {
     let (s, c) = u.sin_cos();
     let out = placement.x * c + placement.y * s;
     let around = placement.y * c - placement.x * s;
-    Jet {
-        point: placement.origin + out * rho[0] + placement.z * height[0],
-        du: around * rho[0],
-        dv: out * rho[1] + placement.z * height[1],
-        duu: out * -rho[0],
-        duv: around * rho[1],
-        dvv: out * rho[2] + placement.z * height[2],
+    let mut jet = Jet::at(placement.origin + out * rho[0] + placement.z * height[0]);
+    if ORDER > 0 {
+        (jet.du, jet.dv) = (around * rho[0], out * rho[1] + placement.z * height[1]);
     }
+    if ORDER > 1 {
+        (jet.duu, jet.duv) = (out * -rho[0], around * rho[1]);
+        jet.dvv = out * rho[2] + placement.z * height[2];
+    }
+    jet
 }
 
 /// A circle of radius `minor` at `major` from the axis, turned: a torus, or with `major` 0 a sphere.
-fn ring(placement: &Placement, major: f64, minor: f64, u: f64, v: f64) -> Jet {
+fn ring<const ORDER: usize>(placement: &Placement, major: f64, minor: f64, u: f64, v: f64) -> Jet {
     let (s, c) = v.sin_cos();
-    turned(placement, u, [major + minor * c, -minor * s, -minor * c], [minor * s, minor * c, -minor * s])
+    turned::<ORDER>(placement, u, [major + minor * c, -minor * s, -minor * c], [minor * s, minor * c, -minor * s])
 }
 
 fn revolution(profile: &Curve, axis: &Placement, u: f64, v: f64) -> Jet {
@@ -356,7 +362,7 @@ fn offset(basis: &Surface, distance: f64, u: f64, v: f64) -> Jet {
 fn nurbs_periods(nurbs: &NurbsSurface) -> [Option<f64>; 2] {
     let [u0, u1, v0, v1] = nurbs.domain();
     let size = crate::geometry::Aabb::of(&nurbs.points).diagonal();
-    let at = |[u, v]: [f64; 2]| nurbs.point(u, v);
+    let at = |[u, v]: [f64; 2]| nurbs.jet_to::<0>(u, v).point;
     let same = |a: [f64; 2], b: [f64; 2]| (at(a) - at(b)).norm() <= 1e-6 * size;
     let shares = [0.0, 0.31, 0.5, 0.77, 1.0];
     let closed_u = shares.iter().all(|s| same([u0, v0 + s * (v1 - v0)], [u1, v0 + s * (v1 - v0)]));
