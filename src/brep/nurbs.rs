@@ -70,18 +70,33 @@ impl<const N: usize> Basis<N> {
         let inner = &knots[degree + 1..count];
         let span = degree + inner.partition_point(|&k| k <= t);
         let span = last_filled_span(knots, degree, span);
-        let mut values = [[0.0; N]; 3];
-        values[0][0] = 1.0;
+        let support = &knots[span + 1 - degree..=span + degree];
+        let mut basis = Self { first: span - degree, values: [[0.0; N]; 3] };
+        // For the degrees of most splines the compiler writes the loops out.
+        match degree {
+            1 => basis.fill::<ORDER>(support, 1, t),
+            2 => basis.fill::<ORDER>(support, 2, t),
+            3 => basis.fill::<ORDER>(support, 3, t),
+            _ => basis.fill::<ORDER>(support, degree, t),
+        }
+        basis
+    }
+
+    /// From the knots at which functions begin or end, as many on either side of `t` as the degree.
+    #[inline(always)]
+    fn fill<const ORDER: usize>(&mut self, support: &[f64], degree: usize, t: f64) {
+        let [values, first, second] = &mut self.values;
+        values[0] = 1.0;
         for q in 1..=degree {
-            if q + 1 >= degree && ORDER > 1 {
-                values[2] = differentiate(knots, span, q, &values[1]);
+            let supports = (&support[degree - q..degree], &support[degree..degree + q]);
+            if q == degree && ORDER > 1 {
+                differentiate(supports, first, second);
             }
             if q + ORDER > degree && ORDER > 0 {
-                values[1] = differentiate(knots, span, q, &values[0]);
+                differentiate(supports, values, first);
             }
-            raise(knots, span, q, t, &mut values[0]);
+            raise(supports, t, values);
         }
-        Self { first: span - degree, values }
     }
 }
 
@@ -93,31 +108,29 @@ fn last_filled_span(knots: &[f64], degree: usize, mut span: usize) -> usize {
     span
 }
 
+/// Where each of the functions of degree q - 1 begins, and where it ends: q of each.
+type Supports<'a> = (&'a [f64], &'a [f64]);
+
 /// Basis functions of degree q - 1 -> degree q, in place.
-fn raise<const N: usize>(knots: &[f64], span: usize, q: usize, t: f64, n: &mut [f64; N]) {
+#[inline(always)]
+fn raise<const N: usize>((begins, ends): Supports, t: f64, n: &mut [f64; N]) {
     let mut saved = 0.0;
-    for (n, [low, high]) in n.iter_mut().zip(supports(knots, span, q)) {
+    for ((n, low), high) in n.iter_mut().zip(begins).zip(ends) {
         let share = if high > low { *n / (high - low) } else { 0.0 };
         (*n, saved) = (saved + (high - t) * share, (t - low) * share);
     }
-    n[q] = saved;
-}
-
-/// Where each of the functions of degree q - 1 begins and ends.
-fn supports(knots: &[f64], span: usize, q: usize) -> impl Iterator<Item = [f64; 2]> + '_ {
-    let (begins, ends) = (&knots[span + 1 - q..=span], &knots[span + 1..=span + q]);
-    begins.iter().zip(ends).map(|(begin, end)| [*begin, *end])
+    n[begins.len()] = saved;
 }
 
 /// Functions (or their derivatives) of degree q - 1 -> derivatives of those of degree q.
-fn differentiate<const N: usize>(knots: &[f64], span: usize, q: usize, n: &[f64; N]) -> [f64; N] {
-    let (mut out, mut saved) = ([0.0; N], 0.0);
-    for ((out, n), [low, high]) in out.iter_mut().zip(n).zip(supports(knots, span, q)) {
+#[inline(always)]
+fn differentiate<const N: usize>((begins, ends): Supports, n: &[f64; N], out: &mut [f64; N]) {
+    let (q, mut saved) = (begins.len(), 0.0);
+    for (((out, n), low), high) in out.iter_mut().zip(n).zip(begins).zip(ends) {
         let share = if high > low { q as f64 * n / (high - low) } else { 0.0 };
         (*out, saved) = (saved - share, share);
     }
     out[q] = saved;
-    out
 }
 
 /// A weighted point: the vector times its weight, and the weight.
