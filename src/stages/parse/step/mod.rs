@@ -7,8 +7,8 @@
 //! Cost: the pass is linear in the bytes and copies nothing; decoding is linear in the entities that the B-rep needs;
 //! a body used several times is built once.
 //!
-//! What it does not promise: pcurves, styles, names and tolerances are not read; wireframes make no faces; external
-//! references are not followed.
+//! What it does not promise: pcurves, styles, names and tolerances are not read, nor are the lines of edges, of which
+//! the vertices tell all; wireframes make no faces; external references are not followed.
 
 mod assembly;
 mod bodies;
