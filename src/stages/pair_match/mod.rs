@@ -195,6 +195,7 @@ pub fn pair_match(
         size,
         room: options.pairs_per_face.saturating_mul(outlines.len()).max(4096),
         known: FxHashMap::default(),
+        found: Vec::new(),
         matches: Matches::default(),
     };
     for bucket in buckets::plan(outlines, &parsed.measures, options) {
@@ -215,6 +216,8 @@ struct Matcher<'a> {
     room: usize,
     /// What was found for faces of bodies in several places, and whether it was a face and itself.
     known: FxHashMap<(Shape, Shape, bool), Vec<Correspondence>>,
+    /// Memory for what is found for two faces.
+    found: Vec<Correspondence>,
     matches: Matches,
 }
 
@@ -243,22 +246,25 @@ impl Matcher<'_> {
             }
             return Ok(());
         }
-        let Some(shapes) = p.shape.zip(q.shape).map(|(s, t)| (s, t, a == b)) else {
-            let found = self.correspondences(a, b)?;
-            self.keep([a, b], weight, found);
-            return Ok(());
-        };
-        if !self.known.contains_key(&shapes) {
-            let found = self.correspondences(a, b)?;
-            self.known.insert(shapes, found);
+        let mut found = std::mem::take(&mut self.found);
+        found.clear();
+        match p.shape.zip(q.shape) {
+            Some((s, t)) => match self.known.get(&(s, t, a == b)) {
+                Some(known) => found.extend_from_slice(known),
+                None => {
+                    self.correspondences(a, b, &mut found)?;
+                    self.known.insert((s, t, a == b), found.clone());
+                }
+            },
+            None => self.correspondences(a, b, &mut found)?,
         }
-        let found = self.known[&shapes].clone();
-        self.keep([a, b], weight, found);
+        self.keep([a, b], weight, found.drain(..));
+        self.found = found;
         Ok(())
     }
 
-    /// All ways in which the corners of two faces correspond.
-    fn correspondences(&self, a: u32, b: u32) -> Result<Vec<Correspondence>, Cancelled> {
+    /// Adds all ways in which the corners of two faces correspond.
+    fn correspondences(&self, a: u32, b: u32, found: &mut Vec<Correspondence>) -> Result<(), Cancelled> {
         let (p, q) = (&self.outlines[a as usize], &self.outlines[b as usize]);
         let search = cyclic::Search {
             limit: self.options.corner_distance * self.size,
@@ -266,7 +272,6 @@ impl Matcher<'_> {
             cancel: self.cancel,
         };
         let both = !(self.options.orientation && p.oriented && q.oriented);
-        let mut found = Vec::new();
         for order in [Order::Reversed, Order::Same] {
             // A face is always its own image in the same order: that says nothing of symmetry, unless it has no side.
             if order == Order::Same && a == b && !both {
@@ -274,7 +279,7 @@ impl Matcher<'_> {
             }
             search.matches(&self.loops[a as usize], &self.loops[b as usize], order, &mut |c| found.push(c))?;
         }
-        Ok(found)
+        Ok(())
     }
 
     /// Keeps pairs of two faces while there is room.
