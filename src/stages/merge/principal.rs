@@ -20,9 +20,9 @@ const DISTINCT: f64 = 1e-3;
 const OPEN: f64 = 0.03;
 /// A plane this near (radians, share of D) to one already known is not polished: exact planes only get worse.
 const KNOWN: (f64, f64) = (0.035, 0.01);
-/// Radii of the rounds of polishing, as shares of D: wide first and with every fourth sample of the first round only,
+/// Radii of the rounds of polishing, as shares of D: wide first and with every eighth sample of the first round only,
 /// to be caught, ..
-const CATCH: [(f64, usize); 7] = [(0.04, 4), (0.04, 4), (0.03, 4), (0.02, 1), (0.015, 1), (0.01, 1), (0.006, 1)];
+const CATCH: [(f64, usize); 7] = [(0.04, 8), (0.04, 8), (0.03, 8), (0.02, 1), (0.015, 1), (0.01, 1), (0.006, 1)];
 /// .. then tight, with every eighth and every fourth sample of two rounds.
 const TIGHTEN: [(f64, usize); 2] = [(0.006, 8), (0.004, 4)];
 /// A step by less than this (radians and share of D together) ends the catching.
