@@ -128,9 +128,10 @@ impl Crossed<'_> {
     /// Rises to a slice; returns the next one where something begins or ends.
     fn rise(&mut self, slice: u32) -> u32 {
         let begun = self.rising.iter().take_while(|(slices, _)| slices.start <= slice).count();
-        self.now.extend_from_slice(&self.rising[..begun]);
-        self.rising = &self.rising[begun..];
         self.now.retain(|(slices, _)| slices.end > slice);
+        // The first slice may lie high up.
+        self.now.extend(self.rising[..begun].iter().filter(|(slices, _)| slices.end > slice).cloned());
+        self.rising = &self.rising[begun..];
         let begins = self.rising.first().map_or(u32::MAX, |(slices, _)| slices.start);
         self.now.iter().fold(begins, |next, (slices, _)| next.min(slices.end))
     }

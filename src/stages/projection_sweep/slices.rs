@@ -20,7 +20,7 @@ use super::slabs::{Slab, Slabs};
 use super::widths::Widths;
 use super::wire::Wire;
 
-/// Edge crossings held at a time by one worker: bounds the memory at some 100 MB.
+/// Edge crossings of the slices that one worker cuts at a time.
 const CROSSINGS: usize = 1 << 20;
 
 /// Edge crossings in all: a mesh of millions of triangles is cut into fewer slices, but never fewer than so many.

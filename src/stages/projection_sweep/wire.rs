@@ -11,6 +11,9 @@ use crate::geometry::{Point, Vector};
 use super::reference::Turntable;
 use super::slices::{Flat, NOISE};
 
+/// Triangles whose height is not above so many times the noise have no plane to speak of.
+const SLIVER: f64 = 1e3;
+
 /// The mesh as vertices with their level (the first slice at or above them), edges and triangles of edges.
 #[derive(Default)]
 pub(super) struct Wire {
@@ -117,9 +120,12 @@ impl Wire {
         };
         let [edge, c, d] = [b, c, d].map(|i| place(i) - place(a));
         let [left, right] = [edge.cross(&c), edge.cross(&d)];
+        let (larger, smaller) = (left.norm_squared(), right.norm_squared());
+        let (larger, smaller) = (larger.max(smaller), larger.min(smaller));
+        // Slivers lie in every plane.
+        let has_plane = smaller > (SLIVER * self.noise).powi(2) * edge.norm_squared();
         // The corner of the smaller triangle stands so far from the plane of the larger one.
-        let larger = left.norm_squared().max(right.norm_squared());
-        left.dot(&right) < 0.0 && left.dot(&d).powi(2) <= self.noise.powi(2) * larger
+        has_plane && left.dot(&right) < 0.0 && left.dot(&d).powi(2) <= self.noise.powi(2) * larger
     }
 
     /// The slices that the edge crosses.
@@ -185,4 +191,31 @@ fn weld(mesh: &Mesh, vertex: impl Fn(&Point) -> WireVertex) -> (Vec<WireVertex>,
     };
     let ids = mesh.points.iter().map(&mut id).collect();
     (vertices, ids)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::alignment::shapes;
+
+    /// Two triangles with the side from (0, 0, 0) to (0, 0, 4), which is doubled by a sliver between them.
+    fn hinge(sliver: f64, other: [f64; 3]) -> Wire {
+        let points = [[0.0, 0.0, 0.0], [0.0, 0.0, 4.0], [1.0, 0.0, 2.0], [0.0, sliver, 4.0], other].map(Point::from);
+        let mut triangles = vec![[0, 1, 2], [3, 0, 4]];
+        if sliver > 0.0 {
+            triangles.push([0, 1, 3]);
+        }
+        let mesh = shapes::mesh(points.to_vec(), triangles);
+        let (axis, u, v) = (Vector::z(), Vector::x(), Vector::y());
+        Wire::new(&mesh, &Turntable { axis, u, v, centre: Point::origin(), largest_variance: 0.0 }, 0.0, 0.5, 8)
+    }
+
+    #[test]
+    fn an_edge_bends_where_its_triangles_do_and_a_sliver_flattens_none() {
+        let straight = |wire: &Wire| (1..wire.edges.len() as u32).filter(|&edge| !wire.bends(edge)).count();
+        assert_eq!(straight(&hinge(0.0, [-1.0, 0.0, 2.0])), 1);
+        assert_eq!(straight(&hinge(0.0, [1.0, 1e-3, 2.0])), 0, "folded back");
+        assert_eq!(straight(&hinge(0.0, [0.0, 1.0, 2.0])), 0);
+        assert_eq!(straight(&hinge(1e-14, [0.0, 1.0, 2.0])), 0);
+    }
 }
