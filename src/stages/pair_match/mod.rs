@@ -224,6 +224,8 @@ struct Matcher<'a> {
 impl Matcher<'_> {
     /// Lets each face of the bucket's subset meet all faces of its neighbourhood.
     fn bucket(&mut self, bucket: &buckets::Bucket) -> Result<(), Cancelled> {
+        // Faces of one shape are in one bucket.
+        self.known.clear();
         for &(a, b) in &bucket.meetings {
             if self.room == 0 {
                 self.matches.truncated = true;
@@ -295,21 +297,25 @@ impl Matcher<'_> {
 mod tests {
     use super::*;
     use crate::brep::{BodyId, MeshFace, Occurrence};
-    use crate::geometry::Transform;
+    use crate::geometry::{Transform, Vector};
     use crate::stages::corner_filter::{self, corner_filter};
     use crate::stages::fixture::{prism, solid};
 
-    /// A wedge, and the same body once more, turned a quarter and pushed aside.
-    fn two_wedges() -> Parsed {
+    /// A wedge, and the same body once more, pushed aside along other axes.
+    fn two_wedges([x, y]: [Vector; 2]) -> Parsed {
         let mut parsed = solid(&prism(&[[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]], 2.0), &Transform::identity());
-        let [x, y, z] = [crate::geometry::Vector::x(), crate::geometry::Vector::y(), crate::geometry::Vector::z()];
-        let placement = Transform::from_axes(&Point::new(9.0, 1.0, 0.0), &y, &-x, &z);
+        let placement = Transform::from_axes(&Point::new(9.0, 1.0, 0.0), &x, &y, &(Vector::z() * x.norm()));
         parsed.model.occurrences.push(Occurrence { path: "2".into(), body: BodyId(0), placement });
         let (points, triangles) = (parsed.mesh.points.len() as u32, parsed.mesh.triangles.len() as u32);
         let copies: Vec<_> = parsed.mesh.points.iter().map(|p| placement.point(p)).collect();
         parsed.mesh.points.extend(copies);
         parsed.mesh.triangles.extend_from_within(..);
-        parsed.mesh.triangles[triangles as usize..].iter_mut().flatten().for_each(|i| *i += points);
+        for triangle in &mut parsed.mesh.triangles[triangles as usize..] {
+            *triangle = triangle.map(|i| i + points);
+            if placement.mirrors() {
+                triangle.swap(0, 1);
+            }
+        }
         let moved = |f: &MeshFace| MeshFace {
             occurrence: 1,
             points: f.points.start + points..f.points.end + points,
@@ -324,17 +330,19 @@ mod tests {
 
     #[test]
     fn faces_of_one_body_in_two_places_match_as_those_of_two_bodies_do() {
-        let parsed = two_wedges();
-        let outlines = corner_filter(&parsed, &corner_filter::Options::default(), &Cancel::new()).unwrap();
-        let matches =
-            |outlines: &[Outline]| pair_match(&parsed, outlines, &Options::default(), &Cancel::new()).unwrap();
-        let shared = matches(&outlines);
-        assert!(outlines.iter().all(|outline| outline.shape.is_some()));
-        assert_eq!(outlines[0].shape, outlines[5].shape);
-        let apart: Vec<_> = outlines.into_iter().map(|outline| Outline { shape: None, ..outline }).collect();
-        assert_eq!(shared.pairs, matches(&apart).pairs);
-        // The two triangles of a wedge and those of the other: each of the four with three others and itself.
-        let triangles = shared.pairs.iter().filter(|p| p.faces.iter().all(|f| f % 5 < 2)).count();
-        assert_eq!(triangles, 6);
+        let (x, y) = (Vector::x(), Vector::y());
+        for (axes, mirrored) in [([y, -x], false), ([x, -y], true), ([2.0 * x, 2.0 * y], false)] {
+            let parsed = two_wedges(axes);
+            let outlines = corner_filter(&parsed, &corner_filter::Options::default(), &Cancel::new()).unwrap();
+            let matches = |of: &[Outline]| pair_match(&parsed, of, &Options::default(), &Cancel::new()).unwrap().pairs;
+            let shared = matches(&outlines);
+            assert!(outlines.iter().all(|outline| outline.shape.is_some()));
+            assert_eq!(outlines[0].shape == outlines[5].shape, !mirrored && axes[0].norm() == 1.0);
+            let apart: Vec<_> = outlines.into_iter().map(|outline| Outline { shape: None, ..outline }).collect();
+            assert_eq!(shared, matches(&apart));
+            // The two triangles of a wedge and those of the other: each of the four with three others and itself.
+            let triangles = shared.iter().filter(|p| p.faces.iter().all(|f| f % 5 < 2)).count();
+            assert_eq!(triangles, if axes[0].norm() == 1.0 { 6 } else { 2 });
+        }
     }
 }
