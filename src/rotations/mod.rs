@@ -68,7 +68,7 @@ pub fn rotations(
     cancel: &Cancel,
 ) -> Result<Rotations, Cancelled> {
     let cosine = options.normal_angle_deg.to_radians().cos();
-    let field = SurfaceField::new(parsed, options.samples, options.on_surface, cosine);
+    let field = SurfaceField::new(parsed, options.samples, options.on_surface, cosine, cancel)?;
     let search = Search { parsed, field, needed: options.exact, centre: parsed.measures.centroid, cancel };
     if search.is_ball()? {
         let axes = [Vector::x(), Vector::y(), Vector::z()].map(|direction| Axis { point: search.centre, direction });

@@ -2,7 +2,7 @@
 //! a walk through the tree would.
 
 use crate::brep::{Mesh, MeshFace, PlacedFaceId};
-use crate::cancel::Cancel;
+use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::silhouette::Silhouette;
 use crate::silhouette::draw::Raster;
@@ -10,7 +10,7 @@ use crate::silhouette::draw::Raster;
 /// The least share of the whole area: one of a fortieth has a hundred samples of two rounds.
 const LARGE: f64 = 0.025;
 /// Faces of no more triangles than are remembered anyway need no picture.
-const FEW_TRIANGLES: u32 = 4;
+const FEW_TRIANGLES: usize = 4;
 /// The side of a pixel, how far points of the face may be off its plane, and how far images may, as shares of the radius:
 /// what lies in a pixel that the face touches is within sqrt(2 * 0.6^2 + (0.45 + 0.05)^2) = 0.985 radii of the face.
 const PIXEL: f64 = 0.6;
@@ -29,7 +29,7 @@ pub struct Footprints {
 /// A plane face: the pixels that it touches.
 #[derive(Clone, Debug)]
 pub struct Footprint {
-    /// Unit normal of the face.
+    /// Unit normal of the plane; that of a triangle may differ as far as flatness allows.
     pub normal: Vector,
     axes: [Vector; 2],
     raster: Raster,
@@ -40,12 +40,17 @@ pub struct Footprint {
 
 impl Footprints {
     /// Of the faces of a mesh, for points within `radius` (mm) of them.
-    pub fn of(mesh: &Mesh, radius: f64) -> Self {
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn of(mesh: &Mesh, radius: f64, cancel: &Cancel) -> Result<Self, Cancelled> {
         let large = LARGE * mesh.faces.iter().map(|f| f.area).sum::<f64>();
-        let is_large = |f: &MeshFace| f.area >= large && f.triangles.len() > FEW_TRIANGLES as usize;
-        let faces = mesh.faces.iter().zip(0..).filter(|(face, _)| is_large(face));
-        let footprint = |(_, i)| Some((PlacedFaceId(i), Footprint::of(mesh, PlacedFaceId(i), radius)?));
-        Self { faces: faces.filter_map(footprint).collect() }
+        let is_large = |f: &MeshFace| f.area >= large && f.triangles.len() > FEW_TRIANGLES;
+        let mut faces = Vec::new();
+        for (_, id) in mesh.faces.iter().zip((0..).map(PlacedFaceId)).filter(|(face, _)| is_large(face)) {
+            faces.extend(Footprint::of(mesh, id, radius, cancel)?.map(|footprint| (id, footprint)));
+        }
+        Ok(Self { faces })
     }
 
     /// That of a face, if it has one.
@@ -57,22 +62,23 @@ impl Footprints {
 
 impl Footprint {
     /// `None` for faces that are not plane, or too large for a picture.
-    fn of(mesh: &Mesh, id: PlacedFaceId, radius: f64) -> Option<Self> {
-        let face = alone(mesh, id);
-        let normal = (0..face.triangles.len()).map(|t| face.doubled_normal(t)).sum::<Vector>().try_normalize(0.0)?;
+    fn of(mesh: &Mesh, id: PlacedFaceId, radius: f64, cancel: &Cancel) -> Result<Option<Self>, Cancelled> {
+        let face = &mesh.faces[id.index()];
+        let doubled: Vector = mesh.triangles_of(id).map(|t| mesh.doubled_normal(t)).sum();
+        let Some(normal) = doubled.try_normalize(0.0) else { return Ok(None) };
         let first = any_perpendicular(&normal);
         let axes = [first, normal.cross(&first)];
-        let centre = face.faces[0].centroid;
-        let reach = |axis: &Vector| face.points.iter().map(|p| axis.dot(&(p - centre)).abs()).fold(0.0, f64::max);
-        // One more, so that no corner lies on the border.
-        let side = 2.0 * (reach(&axes[0]).max(reach(&axes[1])) / (PIXEL * radius)).ceil() + 2.0;
+        let (centre, points) = (face.centroid, &mesh.points[face.points.start as usize..face.points.end as usize]);
+        let reach = |axis: &Vector| points.iter().map(|p| axis.dot(&(p - centre)).abs()).fold(0.0, f64::max);
+        // Two more, so that nothing lies in the first pixels.
+        let side = 2.0 * (reach(&axes[0]).max(reach(&axes[1])) / (PIXEL * radius)).ceil() + 4.0;
         if !(reach(&normal) <= FLAT * radius && side <= MOST_PIXELS) {
-            return None;
+            return Ok(None);
         }
-        let raster = Raster { centre, scale: 1.0 / (PIXEL * radius), side: side as usize };
+        let (face, raster) = (alone(mesh, id), Raster { centre, scale: 1.0 / (PIXEL * radius), side: side as usize });
         let [x, y] = axes.map(|axis| raster.project(&face, &axis));
-        let picture = raster.draw(&face, [&x, &y], &Cancel::new()).ok()?;
-        Some(Self { normal, axes, raster, off: OFF * radius, picture })
+        let picture = raster.draw(&face, [&x, &y], cancel)?;
+        Ok(Some(Self { normal, axes, raster, off: OFF * radius, picture }))
     }
 
     /// Whether a point is surely within the radius of the face.
@@ -115,7 +121,7 @@ mod tests {
     #[test]
     fn what_it_holds_is_near_and_what_lies_on_the_face_is_held() {
         let (mesh, radius) = (letter_f(), 0.05);
-        let footprints = Footprints::of(&mesh, radius);
+        let footprints = Footprints::of(&mesh, radius, &Cancel::new()).unwrap();
         let footprint = footprints.get(PlacedFaceId(0)).unwrap();
         let distance = |p: &Point| {
             let to = |t| (nearest_on_triangle(p, &mesh.corners(t)) - p).norm();
@@ -137,8 +143,14 @@ mod tests {
 
     #[test]
     fn bent_faces_and_faces_of_few_triangles_have_none() {
-        let has_one = |mesh: &Mesh| Footprints::of(mesh, 0.05).get(PlacedFaceId(0)).is_some();
+        let has_picture = |mesh: &Mesh, radius: f64| {
+            Footprints::of(mesh, radius, &Cancel::new()).unwrap().get(PlacedFaceId(0)).is_some()
+        };
+        let has_one = |mesh: &Mesh| has_picture(mesh, 0.05);
         assert!(!has_one(&shapes::cuboid(1.0, 1.0, 1.0)) && !has_one(&shapes::rectangle(1.0, 1.0)));
-        assert!(has_one(&letter_f()) && Footprints::of(&letter_f(), 1e-4).get(PlacedFaceId(0)).is_none());
+        assert!(has_one(&letter_f()) && !has_picture(&letter_f(), 1e-4) && !has_picture(&letter_f(), f64::NAN));
+        let cancel = Cancel::new();
+        cancel.cancel();
+        assert!(Footprints::of(&letter_f(), 0.05, &cancel).is_err());
     }
 }

@@ -9,8 +9,9 @@
 //! whose coarse surface support (`support`) is far below the best are dropped. Faces that a plane maps onto whole faces
 //! (`whole_faces`, `quads`) need no look at their samples.
 //!
-//! Cost: a look-up for each face and, for the samples of the others, a query of the triangle tree: a few hundred for each
-//! plane that is kept, some tens for each that is dropped.
+//! Cost: a look-up for each face and, for the samples of the others, a bit of the picture of a large plane face
+//! (`footprint`) or a query of the triangle tree: a few hundred for each plane that is kept, some tens for each that is
+//! dropped.
 
 pub mod faces;
 mod footprint;
@@ -142,9 +143,9 @@ pub fn validate(
     cancel: &Cancel,
 ) -> Result<Validated, ModelError> {
     let cosine = options.normal_angle_deg.to_radians().cos();
-    let field = SurfaceField::new(parsed, options.samples, options.on_surface, cosine);
-    let mut samples = FaceSamples::new(parsed, outlines, options);
     let cancelled = |c| ModelError::cancelled(Stage::Validate, c);
+    let field = SurfaceField::new(parsed, options.samples, options.on_surface, cosine, cancel).map_err(cancelled)?;
+    let mut samples = FaceSamples::new(parsed, outlines, options);
     let mut planes = Vec::new();
     if options.correlation > 0.0 {
         for candidate in &candidates.mirrors {
@@ -296,7 +297,7 @@ mod tests {
         let cube = cuboid(1.0, 1.0, 1.0).into_iter().map(|f| f.iter().map(|p| p + Vector::x() * 5.0).collect());
         let polygons: Vec<_> = cuboid(4.0, 1.0, 1.0).into_iter().chain(cube).collect();
         let parsed = solid(&polygons, &Transform::identity());
-        let field = SurfaceField::new(&parsed, 2000, 0.004, 0.866);
+        let field = SurfaceField::new(&parsed, 2000, 0.004, 0.866, &Cancel::new()).unwrap();
         let plane = Plane { normal: Vector::x(), offset: 2.0 };
         let support = field.support(&parsed.mesh, &plane.reflection(), &Cancel::new()).unwrap();
         assert!((support.share - 0.75).abs() <= 4.0 * support.error.max(1e-3), "{support:?}");

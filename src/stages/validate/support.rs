@@ -56,18 +56,21 @@ pub enum Round {
 
 impl SurfaceField {
     /// Samples the mesh of a model at about `count` points; `share` of D is the distance within which they agree.
-    pub fn new(parsed: &Parsed, count: usize, share: f64, cosine: f64) -> Self {
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub fn new(parsed: &Parsed, count: usize, share: f64, cosine: f64, cancel: &Cancel) -> Result<Self, Cancelled> {
         let mesh = &parsed.mesh;
         let tree = Bvh::new(mesh.triangles.len(), numbered_triangles(mesh));
         let first = count.div_ceil(STRIDES[0]);
         let (samples, coarse) = coarse_first(&sample_mesh(mesh, first, 0), STRIDES[1]);
         let oriented = parsed.model.bodies.iter().all(|b| b.solid) && encloses_volume(parsed);
         let (radius, agreeing) = (parsed.measures.tolerance.length(share), Neighbours::within(cosine, !oriented));
-        Self {
+        Ok(Self {
             tree,
             quads: Quads::of(mesh),
             whole: WholeFaces::of(mesh, SAME * radius, !oriented),
-            footprints: Footprints::of(mesh, radius),
+            footprints: Footprints::of(mesh, radius, cancel)?,
             samples,
             coarse,
             last: (OnceLock::new(), count - first),
@@ -75,7 +78,7 @@ impl SurfaceField {
             cosine,
             agreeing,
             oriented,
-        }
+        })
     }
 
     /// The samples of a round and those before it.
