@@ -92,7 +92,7 @@ pub struct Vertex {
 pub struct Edge {
     /// Number of the entity in the file.
     pub entity: u64,
-    /// `None`: the straight segment between the vertices.
+    /// `None`: the straight segment between the vertices, of which a line would tell no more.
     pub curve: Option<Arc<Curve>>,
     /// Where it starts.
     pub start: VertexId,

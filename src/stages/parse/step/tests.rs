@@ -146,10 +146,13 @@ fn curves_on_surfaces_may_be_there_or_not() {
         #80=ADVANCED_FACE('',(#63),#70,.T.);#81=ADVANCED_FACE('',(#64),#71,.F.);#82=ADVANCED_FACE('',(#65),#72,.T.);
         #90=CLOSED_SHELL('',(#80,#81,#82));#91=MANIFOLD_SOLID_BREP('',#90);";
     let without = solid.replace("#14,#14,#40", "#14,#14,#20").replace("#15,#15,#41", "#15,#15,#21");
-    for text in [solid.to_owned(), without.replace("#14,#15,#42", "#14,#15,#23")] {
+    // Of an edge along a line the ends tell all.
+    let broken_line = solid.replace("#10,#22", "#998,#999");
+    for text in [solid.to_owned(), without.replace("#14,#15,#42", "#14,#15,#23"), broken_line] {
         let parsed = shape("#91", &text);
         assert!(near(parsed.measures.area, 28.0 * std::f64::consts::PI), "{}", parsed.measures.area);
         assert!(near(parsed.measures.volume, 20.0 * std::f64::consts::PI), "{}", parsed.measures.volume);
+        assert!(parsed.warnings.is_empty(), "{:?}", parsed.warnings);
     }
 }
 

@@ -322,14 +322,14 @@ impl<'a> Builder<'a> {
         let end = self.vertex(cursor.reference()?)?;
         let geometry = cursor.optional_reference()?;
         // Half of the entities of many files are lines with their points and directions: none is looked at.
-        let straight = is_curve && geometry.is_some_and(|curve| self.geometry.is_line(curve));
+        let straight = is_curve && start != end && geometry.is_some_and(|curve| self.geometry.is_line(curve));
         let (curve, same_sense) = match geometry {
             _ if straight => (None, cursor.flag().unwrap_or(true)),
             Some(curve) if is_curve => (self.edge_curve(record, curve), cursor.flag().unwrap_or(true)),
             Some(parent) if record.is(Kind::Subedge) => self.parent_curve(parent, depth)?,
             _ => (None, true),
         };
-        if curve.is_none() && start == end && !straight {
+        if curve.is_none() && start == end {
             return Err(record.fault("a closed edge without a curve"));
         }
         let shaped = curve.is_some();
