@@ -157,6 +157,9 @@ def main():
     parser.add_argument("files", nargs="+")
     parser.add_argument("--every", type=int, default=1, help="take every N-th file of a shuffled list")
     arguments = parser.parse_args()
+    for program in (SYMALIGN, reading.FACTS):
+        if not os.path.exists(program):
+            parser.error(f"{os.path.relpath(program)} is not built: cargo build --release --examples --bins")
     paths = list(reading.model_files(arguments.files))
     random.Random(7).shuffle(paths)
     paths = paths[::arguments.every]

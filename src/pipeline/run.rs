@@ -101,16 +101,17 @@ fn no_longer_listed(store: &Path, manifest: &Manifest) -> Option<String> {
 }
 
 /// Places at the bench for so many models computed at the same time: a few more where there are several, for eight times
-/// on its way a model waits for a worker to wake up, and with it a processor.
+/// on its way a model waits for a worker to wake up, and with it a processor. Two more for two, three more for eight.
 fn places(jobs: usize) -> usize {
-    if jobs > 1 { jobs + jobs.div_ceil(4) } else { 1 }
+    if jobs > 1 { jobs + 1 + jobs.div_ceil(4) } else { 1 }
 }
 
 /// Sets up all threads, and collects on this one until the last parcel has come out.
 fn stream(request: &Request, progress: &mut Progress, build: &Build, collector: &mut Collector) -> Result<Manifest> {
     let settings = request.settings;
-    let bench = Bench::new(places(settings.busy_limit()), allowed(settings));
-    let budget = Budget::new(settings.busy_limit(), memory_of(settings.limits.memory_mb));
+    let places = places(settings.busy_limit());
+    let bench = Bench::new(places, allowed(settings));
+    let budget = Budget::new(places, memory_of(settings.limits.memory_mb));
     let counters = Counters::default();
     let known = collector.known(request.retry_failed);
     std::thread::scope(|scope| {
