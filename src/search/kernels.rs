@@ -33,8 +33,9 @@ impl Tile<4, 2> for Magnitudes {
 
     #[inline(always)]
     fn distances<S: Simd>(simd: S, queries: &[S::f32s], rows: [&[f32]; 4]) -> [[S::f32s; 2]; 4] {
-        let view = |i: usize| roots(simd, view_of(queries, i), rows.map(|row| view_of(row, i)));
-        added(simd, added(simd, view(0), view(1)), view(2))
+        let first = view(simd, (queries, 0), (rows, 0));
+        let second = view(simd, (queries, 1), (rows, 1));
+        added(simd, added(simd, first, second), view(simd, (queries, 2), (rows, 2)))
     }
 }
 
@@ -47,9 +48,10 @@ impl Tile<4, 2> for Swapped {
 
     #[inline(always)]
     fn distances<S: Simd>(simd: S, queries: &[S::f32s], rows: [&[f32]; 4]) -> [[S::f32s; 2]; 4] {
-        let view = |i: usize, j: usize| roots(simd, view_of(queries, i), rows.map(|row| view_of(row, j)));
-        let (straight, crossed) = (added(simd, view(1, 1), view(2, 2)), added(simd, view(1, 2), view(2, 1)));
-        let first = view(0, 0);
+        let first = view(simd, (queries, 0), (rows, 0));
+        let [second, third] = [1, 2].map(|i| (queries, i));
+        let straight = added(simd, view(simd, second, (rows, 1)), view(simd, third, (rows, 2)));
+        let crossed = added(simd, view(simd, second, (rows, 2)), view(simd, third, (rows, 1)));
         let least = |r: usize, q: usize| simd.min_f32s(straight[r][q], crossed[r][q]);
         added(simd, first, std::array::from_fn(|r| std::array::from_fn(|q| least(r, q))))
     }
@@ -67,7 +69,14 @@ fn added<S: Simd>(simd: S, a: [[S::f32s; 2]; 4], b: [[S::f32s; 2]; 4]) -> [[S::f
     std::array::from_fn(|r| std::array::from_fn(|q| simd.add_f32s(a[r][q], b[r][q])))
 }
 
-/// Euclidean distances of a view of the queries and one of the rows.
+/// Euclidean distances of the i-th view of the queries and the j-th of the rows. A function, for a closure may be
+/// compiled for every processor, and each of its operations becomes a call.
+#[inline(always)]
+fn view<S: Simd>(simd: S, (queries, i): (&[S::f32s], usize), (rows, j): ([&[f32]; 4], usize)) -> [[S::f32s; 2]; 4] {
+    roots(simd, view_of(queries, i), rows.map(|row| view_of(row, j)))
+}
+
+/// Euclidean distances of queries and rows.
 #[inline(always)]
 fn roots<S: Simd>(simd: S, queries: &[S::f32s], rows: [&[f32]; 4]) -> [[S::f32s; 2]; 4] {
     let mut sums = [[simd.splat_f32s(0.0); 2]; 4];
@@ -93,9 +102,11 @@ impl Tile<1, 1> for Phases {
 
     #[inline(always)]
     fn distances<S: Simd>(simd: S, queries: &[S::f32s], [row]: [&[f32]; 1]) -> [[S::f32s; 1]; 1] {
-        const VIEW: usize = PHASES / 3;
-        let view = |i: usize| turned(simd, &queries[i * VIEW..][..VIEW], &row[i * VIEW..][..VIEW]);
-        let views = [view(0), view(1), view(2)];
+        let views = [
+            turned(simd, view_of(queries, 0), view_of(row, 0)),
+            turned(simd, view_of(queries, 1), view_of(row, 1)),
+            turned(simd, view_of(queries, 2), view_of(row, 2)),
+        ];
         let mut least = simd.splat_f32s(f32::INFINITY);
         for signs in 0..8_usize {
             let flipped = |axis: usize| signs >> (axis % 3) & 1;
