@@ -1,15 +1,15 @@
 //! The lesser and the larger of two numbers.
 //!
-//! `f64::min` and `max` look for what is no number; where all are, comparing is all there is to it.
+//! `min` and `max` look for what is no number; where all are, comparing is all there is to it, one instruction.
 
 /// The lesser one.
 #[inline]
-pub fn less(a: f64, b: f64) -> f64 {
+pub fn less<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }
 }
 
 /// The larger one.
 #[inline]
-pub fn more(a: f64, b: f64) -> f64 {
+pub fn more<T: PartialOrd>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }

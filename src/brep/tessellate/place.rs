@@ -151,8 +151,11 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
 
 /// Points, each with the distance from the one before it as its weight: many on a short edge count little.
 fn weights(chain: &[Point]) -> impl Iterator<Item = (Point, f64)> + '_ {
-    let before = chain.first().into_iter().chain(chain);
-    chain.iter().zip(before).map(|(p, q)| (*p, (p - q).norm()))
+    (0..chain.len()).map(|i| weighted(chain, i))
+}
+
+fn weighted(chain: &[Point], i: usize) -> (Point, f64) {
+    (chain[i], (chain[i] - chain[i.saturating_sub(1)]).norm())
 }
 
 /// Points of an edge with their weights.
@@ -163,16 +166,12 @@ fn chain(model: &Model, id: EdgeId, span: Option<[f64; 2]>) -> [(Point, f64); ED
         Some((curve, period, [from, to])) => curve.point(curve.wrap(from + (to - from) * share, *period)),
         None => start + (end - start) * share,
     };
-    let mut before = start;
-    std::array::from_fn(|i| {
-        let p = match i {
-            0 => start,
-            EDGE_SAMPLES => end,
-            _ => at(i as f64 / EDGE_SAMPLES as f64),
-        };
-        let weight = (p - std::mem::replace(&mut before, p)).norm();
-        (p, weight)
-    })
+    let points: [Point; EDGE_SAMPLES + 1] = std::array::from_fn(|i| match i {
+        0 => start,
+        EDGE_SAMPLES => end,
+        _ => at(i as f64 / EDGE_SAMPLES as f64),
+    });
+    std::array::from_fn(|i| weighted(&points, i))
 }
 
 /// The poles of a whole sphere or torus; a grid over the domain of others that have one.

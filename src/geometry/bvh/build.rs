@@ -1,6 +1,7 @@
 //! Building the tree: cuts where the boxes come out small (the surface area heuristic over bins).
 
 use super::{Child, LEAF, Node};
+use crate::geometry::order::{less, more};
 use crate::geometry::sides::Sides;
 
 /// Places tried for a cut.
@@ -49,13 +50,13 @@ impl Bounds {
     }
 }
 
-/// The lesser ones of numbers: one instruction, where `f32::min` also looks for what is none.
+/// The lesser one of each two numbers.
 fn lesser(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
-    std::array::from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
+    std::array::from_fn(|i| less(a[i], b[i]))
 }
 
 fn greater(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
-    std::array::from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    std::array::from_fn(|i| more(a[i], b[i]))
 }
 
 /// Adds the node of all items, of which the first is number `first`, and the nodes below it.

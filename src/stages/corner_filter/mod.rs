@@ -119,8 +119,10 @@ pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Res
             }
         };
         let place = Place::new(&occurrence.placement);
-        let shared = (uses[occurrence.body.index()] > 1).then_some(occurrence.body);
-        let placed = |(number, outline): (u32, &LocalOutline)| outline.placed(parsed, faces, &place, shared, number);
+        let is_shared = uses[occurrence.body.index()] > 1;
+        let placed = |(number, outline): (u32, &LocalOutline)| {
+            outline.placed(parsed, faces, &place, is_shared.then_some((occurrence.body, number)))
+        };
         outlines.extend((0..).zip(local.iter()).filter_map(placed));
     }
     Ok(outlines)
@@ -176,15 +178,14 @@ struct LocalOutline {
 }
 
 impl LocalOutline {
-    /// The outline in its occurrence; `None` where the mesh has none of its faces. It is the `number`-th of its body,
-    /// which is named where several occurrences share it.
+    /// The outline in its occurrence; `None` where the mesh has none of its faces. Where several occurrences share it,
+    /// `shared` names its body and its number there.
     fn placed(
         &self,
         parsed: &Parsed,
         places: &PlacedFaces,
         place: &Place,
-        shared: Option<BodyId>,
-        number: u32,
+        shared: Option<(BodyId, u32)>,
     ) -> Option<Outline> {
         let placement = place.placement;
         let mut faces: Vec<_> = self.faces.iter().filter_map(|&f| places.find(f)).collect();
@@ -213,7 +214,7 @@ impl LocalOutline {
             centroid: Point::from(moment / area),
             axis,
             oriented: self.oriented,
-            shape: shared.map(|body| Shape { body, number, backwards, scale: scale.to_bits() }),
+            shape: shared.map(|(body, number)| Shape { body, number, backwards, scale: scale.to_bits() }),
             faces,
         })
     }

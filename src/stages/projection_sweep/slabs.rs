@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use super::wire::Wire;
+use super::wire::{Wire, grouped};
 
 /// Slices that cross the same edges.
 pub(super) struct Slab {
@@ -78,25 +78,16 @@ impl<'a> Slabs<'a> {
         let mut edges: Vec<_> = edges.map(|edge| (0, edge)).collect();
         edges.iter_mut().for_each(|(root, edge)| *root = self.root(*edge));
         edges.iter().for_each(|(root, _)| self.numbers[*root as usize] = u32::MAX);
-        // Sizes become starts, and as edges are put in, ends.
-        let mut ends: Vec<usize> = Vec::new();
-        for (root, _) in &edges {
+        let mut count = 0;
+        for (root, _) in &mut edges {
             let number = &mut self.numbers[*root as usize];
             if *number == u32::MAX {
-                *number = ends.len() as u32;
-                ends.push(0);
+                *number = count;
+                count += 1;
             }
-            ends[*number as usize] += 1;
+            *root = *number;
         }
-        let mut start = 0;
-        ends.iter_mut().for_each(|size| start += std::mem::replace(size, start));
-        let mut sorted = vec![0; edges.len()];
-        for (root, edge) in edges {
-            let end = &mut ends[self.numbers[root as usize] as usize];
-            sorted[*end] = edge;
-            *end += 1;
-        }
-        (sorted, ends)
+        grouped(edges.iter().copied(), count as usize)
     }
 }
 

@@ -43,7 +43,8 @@ pub struct Slices {
     stood: Option<f64>,
 }
 
-/// The pieces of the cut at one height, or at several where it is the same: convex hulls, counter-clockwise, one after the other.
+/// The pieces of the cut at one height, or at several where it is the same: convex hulls, counter-clockwise, one after
+/// the other.
 #[derive(Clone, Debug, Default)]
 struct Slice {
     points: Vec<Flat>,
@@ -147,12 +148,12 @@ fn slices_of(wire: &Wire, block: &Range<usize>) -> Vec<Slice> {
 /// Adds the slices of a slab, as one where they are all alike.
 fn push_slices(slices: &mut Vec<Slice>, wire: &Wire, slab: &Slab) {
     let is_upright = |piece: &[u32]| piece.iter().all(|&edge| wire.is_upright(edge));
-    let number = if slab.pieces().all(is_upright) { 1 } else { slab.slices.len() };
+    let upright: Vec<bool> = slab.pieces().map(is_upright).collect();
+    let number = if upright.iter().all(|&upright| upright) { 1 } else { slab.slices.len() };
     let first = slices.len();
     slices.resize(first + number, Slice { alike: slab.slices.len() / number, ..Slice::default() });
     let (mut points, mut hull) = (Vec::new(), Vec::new());
-    for piece in slab.pieces() {
-        let upright = is_upright(piece);
+    for (piece, upright) in slab.pieces().zip(upright) {
         for (slice, height) in slices[first..].iter_mut().zip(slab.slices.clone()) {
             if !upright || height == slab.slices.start {
                 points.clear();

@@ -165,17 +165,26 @@ impl Wire {
 
 /// In the order of the first of `count` slices that each crosses.
 fn rising(spans: impl Iterator<Item = (Range<u32>, u32)> + Clone, count: usize) -> Vec<(Range<u32>, u32)> {
-    let mut places = vec![0; count + 1];
-    spans.clone().for_each(|(slices, _)| places[slices.start as usize] += 1);
+    grouped(spans.map(|span| (span.0.start, span)), count + 1).0
+}
+
+/// Things group by group, those of one in the order in which they came, and where each of `count` groups ends.
+pub(super) fn grouped<T: Clone + Default>(
+    things: impl Iterator<Item = (u32, T)> + Clone,
+    count: usize,
+) -> (Vec<T>, Vec<usize>) {
+    let mut ends = vec![0; count];
+    things.clone().for_each(|(group, _)| ends[group as usize] += 1);
+    // Sizes become starts, and as things are put in, ends.
     let mut total = 0;
-    places.iter_mut().for_each(|place| total += std::mem::replace(place, total));
-    let mut sorted = vec![(0..0, 0); total];
-    for span in spans {
-        let place = &mut places[span.0.start as usize];
-        sorted[*place] = span;
-        *place += 1;
+    ends.iter_mut().for_each(|size| total += std::mem::replace(size, total));
+    let mut sorted = vec![T::default(); total];
+    for (group, thing) in things {
+        let end = &mut ends[group as usize];
+        sorted[*end] = thing;
+        *end += 1;
     }
-    sorted
+    (sorted, ends)
 }
 
 /// One vertex for all points with the same coordinates, and the vertex of each point.

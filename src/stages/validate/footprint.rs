@@ -68,7 +68,7 @@ impl Footprint {
         let Some(normal) = doubled.try_normalize(0.0) else { return Ok(None) };
         let first = any_perpendicular(&normal);
         let axes = [first, normal.cross(&first)];
-        let (centre, points) = (face.centroid, &mesh.points[face.points.start as usize..face.points.end as usize]);
+        let (centre, points) = (face.centroid, mesh.points_of(id));
         let reach = |axis: &Vector| points.iter().map(|p| axis.dot(&(p - centre)).abs()).fold(0.0, f64::max);
         // Two more, so that nothing lies in the first pixels.
         let side = 2.0 * (reach(&axes[0]).max(reach(&axes[1])) / (PIXEL * radius)).ceil() + 4.0;
@@ -95,7 +95,7 @@ impl Footprint {
 /// A mesh of one face.
 fn alone(mesh: &Mesh, id: PlacedFaceId) -> Mesh {
     let face = &mesh.faces[id.index()];
-    let points = mesh.points[face.points.start as usize..face.points.end as usize].to_vec();
+    let points = mesh.points_of(id).to_vec();
     let own = |triangle: &[u32; 3]| triangle.map(|i| i - face.points.start);
     let triangles: Vec<_> = mesh.triangles[mesh.triangles_of(id)].iter().map(own).collect();
     let whole = MeshFace { points: 0..points.len() as u32, triangles: 0..triangles.len() as u32, ..face.clone() };
