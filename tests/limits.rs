@@ -82,9 +82,8 @@ fn giants_wait_for_room_instead_of_adding_to_the_peak() {
     let one = peak_of_run(dir.path(), &["run", "in/0.step", "--jobs", "4", "--store", "one"]);
     let six = peak_of_run(dir.path(), &["run", "--jobs", "4"]);
     assert!(failures(dir.path()).is_empty());
+    assert!(six < 2 * one, "one takes {} MB, six {} MB", one >> 20, six >> 20);
     limits(dir.path(), "memory_mb = 100000");
     let at_once = peak_of_run(dir.path(), &["run", "--jobs", "4", "--store", "all"]);
-    // In turn, threads keep pieces of memory for the next: what that comes to depends on which threads these are.
-    let [one, six, at_once] = [one, six, at_once].map(|bytes| bytes >> 20);
-    assert!(six < (one + at_once) / 2, "one takes {one} MB, six in turn {six} MB, at once {at_once} MB");
+    assert!(at_once > six, "six at once take {} MB, in turn {} MB", at_once >> 20, six >> 20);
 }
