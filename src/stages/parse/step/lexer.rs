@@ -5,6 +5,7 @@
 use memchr::{memchr, memchr3, memmem};
 
 use super::effort::Effort;
+use super::eight::{find, leading_number};
 use super::keyword::Kind;
 use crate::cancel::{Cancel, Cancelled};
 
@@ -143,7 +144,16 @@ fn instance(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
 }
 
 /// An unsigned decimal number at `at` and the place behind it.
+#[inline]
 pub(super) fn number(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
+    match leading_number(bytes, at) {
+        Some((value, digits)) => (digits > 0).then_some((value, at + digits)),
+        None => long_number(bytes, at),
+    }
+}
+
+/// A number of more than seven digits, or at the end of the bytes.
+fn long_number(bytes: &[u8], at: usize) -> Option<(u64, usize)> {
     let mut end = at;
     let mut value = 0_u64;
     while let Some(digit) = bytes.get(end).map(|b| b.wrapping_sub(b'0')).filter(|digit| *digit < 10) {
@@ -162,10 +172,9 @@ pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
         return (Kind::Complex, at + 1);
     }
     let rest = &bytes[at.min(bytes.len())..];
-    if let Some(length) = memchr(b'(', &rest[..rest.len().min(LONGEST_KEYWORD)]) {
+    if let Some(length) = find(&rest[..rest.len().min(LONGEST_KEYWORD)], b'(') {
         let kind = Kind::of(&rest[..length]);
-        // All letters are looked at, which is faster than to stop at the first bad one.
-        if kind != Kind::Other || rest[..length].iter().fold(length > 0, |plain, b| plain & is_plain(*b)) {
+        if kind != Kind::Other || is_plain(&rest[..length]) {
             return (kind, at + length);
         }
     }
@@ -174,9 +183,21 @@ pub(super) fn kind_at(bytes: &[u8], at: usize) -> (Kind, usize) {
     (Kind::of(&buffer[..length]), after)
 }
 
-/// Whether a byte belongs to a keyword that is written as it should be.
-fn is_plain(b: u8) -> bool {
-    b.is_ascii_uppercase() | b.is_ascii_digit() | (b == b'_')
+/// Which bytes a keyword is not written with.
+const STRANGE: [bool; 256] = {
+    let mut strange = [true; 256];
+    let mut b = 0;
+    while b < 128 {
+        strange[b] = !((b as u8).is_ascii_uppercase() || (b as u8).is_ascii_digit() || b as u8 == b'_');
+        b += 1;
+    }
+    strange
+};
+
+/// Whether a keyword is written as it should be. All letters are looked at, which is faster than to stop at the first
+/// bad one.
+fn is_plain(keyword: &[u8]) -> bool {
+    !keyword.iter().fold(keyword.is_empty(), |strange, b| strange | STRANGE[usize::from(*b)])
 }
 
 /// Copies the keyword at `at` in upper case without the spaces and line breaks inside; its length, and the place behind.

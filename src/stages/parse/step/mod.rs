@@ -15,6 +15,7 @@ mod bodies;
 mod cursor;
 mod curves;
 mod effort;
+mod eight;
 mod facets;
 mod free_curves;
 mod header;
