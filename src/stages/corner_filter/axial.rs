@@ -1,7 +1,7 @@
 //! Faces that turn about an axis into themselves: discs, rings, full cylinders, cones, caps, tori.
 
 use super::PlacedFaces;
-use super::boundary::Boundary;
+use super::boundary::{Boundary, Loops};
 use crate::brep::{FaceGeometry, FaceId, Surface};
 use crate::geometry::revolution::fit_axis;
 use crate::geometry::{Axis, Point, Transform, Vector};
@@ -15,9 +15,9 @@ const LEAN: f64 = 0.1;
 /// surface turns about it too.
 pub(super) fn axis(
     parsed: &Parsed,
-    places: &PlacedFaces,
+    places: PlacedFaces,
     group: &[FaceId],
-    loops: &[Boundary],
+    loops: &Loops,
     placement: &Transform,
     tolerance: f64,
 ) -> Option<Axis> {
@@ -25,22 +25,22 @@ pub(super) fn axis(
         return None;
     }
     let axis = candidate(parsed, places, group, loops, placement)?;
-    let turns = loops.iter().all(|l| is_circle(l, &axis, tolerance));
+    let turns = loops.iter().all(|l| is_circle(&l, &axis, tolerance));
     (turns && (is_analytic(parsed, group) || normals_meet(parsed, places, group, &axis, placement))).then_some(axis)
 }
 
 /// The only axis the group may have: its surface's own, that of a circle around it, or the one its normals meet.
 fn candidate(
     parsed: &Parsed,
-    places: &PlacedFaces,
+    places: PlacedFaces,
     group: &[FaceId],
-    loops: &[Boundary],
+    loops: &Loops,
     placement: &Transform,
 ) -> Option<Axis> {
     if let Some(axis) = surface(parsed, group[0]).and_then(surface_axis) {
         return Some(axis);
     }
-    if let Some(axis) = loops.iter().find_map(circle_axis) {
+    if let Some(axis) = loops.iter().find_map(|l| circle_axis(&l)) {
         return Some(axis);
     }
     let (elements, size) = (elements(parsed, places, group), parsed.measures.tolerance.size());
@@ -97,7 +97,7 @@ fn is_circle(boundary: &Boundary, axis: &Axis, tolerance: f64) -> bool {
 }
 
 /// Middle, normal and area of the triangles of the group, in place.
-fn elements(parsed: &Parsed, places: &PlacedFaces, group: &[FaceId]) -> Vec<(Point, Vector, f64)> {
+fn elements(parsed: &Parsed, places: PlacedFaces, group: &[FaceId]) -> Vec<(Point, Vector, f64)> {
     let mesh = &parsed.mesh;
     let triangles = group.iter().filter_map(|&f| places.find(f)).flat_map(|f| mesh.triangles_of(f));
     let element = |t: usize| {
@@ -110,7 +110,7 @@ fn elements(parsed: &Parsed, places: &PlacedFaces, group: &[FaceId]) -> Vec<(Poi
 }
 
 /// Whether the normals of the triangles meet the axis, by area.
-fn normals_meet(parsed: &Parsed, places: &PlacedFaces, group: &[FaceId], axis: &Axis, placement: &Transform) -> bool {
+fn normals_meet(parsed: &Parsed, places: PlacedFaces, group: &[FaceId], axis: &Axis, placement: &Transform) -> bool {
     let axis = Axis { point: placement.point(&axis.point), direction: placement.direction(&axis.direction) };
     let elements = elements(parsed, places, group);
     let lean = |(p, n, _): &(Point, Vector, f64)| {

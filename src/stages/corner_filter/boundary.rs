@@ -1,22 +1,20 @@
 //! The loops of a maximal face, without seams and poles, and their corners.
 
 use super::edges::EdgeShapes;
-use super::{InnerLoop, LocalOutline};
-use crate::brep::{EdgeId, EdgeUse, FaceGeometry, FaceId, Model, Surface, VertexId};
+use super::{InnerLoop, LocalOutline, LocalOutlines};
+use crate::brep::{EdgeUse, FaceGeometry, FaceId, Model, Surface, VertexId};
 use crate::geometry::{Axis, Point, Vector};
 
 /// A closed chain of edges around a maximal face.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Boundary {
-    pub corners: Vec<Point>,
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Boundary<'a> {
+    pub corners: &'a [Point],
     /// Points along the loop, close enough together for areas and centroids.
-    pub points: Vec<Point>,
+    pub points: &'a [Point],
     pub length: f64,
-    /// Whether a piece of it belongs to a loop that the file calls the outer one.
-    pub outer: bool,
 }
 
-impl Boundary {
+impl Boundary<'_> {
     /// Half the sum of p x q, taken about the first point.
     pub fn vector_area(&self) -> Vector {
         let Some(origin) = self.points.first() else { return Vector::zeros() };
@@ -35,14 +33,52 @@ impl Boundary {
     }
 }
 
+/// The loops around a group of faces.
+#[derive(Default)]
+pub(super) struct Loops {
+    loops: Vec<OneLoop>,
+    corners: Vec<Point>,
+    points: Vec<Point>,
+}
+
+/// A loop whose corners and points end here, and begin where those of the one before end.
+struct OneLoop {
+    corners: usize,
+    points: usize,
+    length: f64,
+    /// Whether a piece of it belongs to a loop that the file calls the outer one.
+    outer: bool,
+}
+
+impl Loops {
+    fn clear(&mut self) {
+        self.loops.clear();
+        self.corners.clear();
+        self.points.clear();
+    }
+
+    fn get(&self, i: usize) -> Boundary<'_> {
+        let (corners, points) = i.checked_sub(1).map_or((0, 0), |i| (self.loops[i].corners, self.loops[i].points));
+        let this = &self.loops[i];
+        let (corners, points) = (&self.corners[corners..this.corners], &self.points[points..this.points]);
+        Boundary { corners, points, length: this.length }
+    }
+
+    /// The loops in the order in which they were found.
+    pub fn iter(&self) -> impl Iterator<Item = Boundary<'_>> {
+        (0..self.loops.len()).map(|i| self.get(i))
+    }
+}
+
 /// Finds the loops of one group of faces after the other, in the same memory.
 pub(super) struct Tracer<'a> {
-    pub model: &'a Model,
-    pub shapes: &'a EdgeShapes,
+    model: &'a Model,
+    pub shapes: EdgeShapes,
     /// An edge shorter than this is a pole, mm.
     pub shortest: f64,
     /// Radians.
-    pub corner_angle: f64,
+    corner_angle: f64,
+    pub loops: Loops,
     room: Room,
 }
 
@@ -51,7 +87,8 @@ pub(super) struct Tracer<'a> {
 struct Room {
     /// Uses of edges, and whether their loop is called the outer one.
     uses: Vec<(EdgeUse, bool)>,
-    edges: Vec<EdgeId>,
+    /// How often the group uses each edge of the model; all zero between two groups.
+    counts: Vec<u32>,
     /// Where uses start, and their positions.
     starts: Vec<(VertexId, usize)>,
     used: Vec<bool>,
@@ -60,36 +97,36 @@ struct Room {
 }
 
 impl<'a> Tracer<'a> {
-    pub fn new(model: &'a Model, shapes: &'a EdgeShapes, shortest: f64, corner_angle: f64) -> Self {
-        Self { model, shapes, shortest, corner_angle, room: Room::default() }
+    pub fn new(model: &'a Model, corner_angle: f64) -> Self {
+        let room = Room { counts: vec![0; model.edges.len()], ..Room::default() };
+        Self { model, shapes: EdgeShapes::new(model), shortest: 0.0, corner_angle, loops: Loops::default(), room }
     }
 
-    /// The loops around a group of faces: edges between two faces of the group and seams (used twice by one face) go,
-    /// so do edges without length; what is left is chained again.
-    pub fn loops(&mut self, group: &[FaceId]) -> Vec<Boundary> {
-        let (model, shapes, shortest) = (self.model, self.shapes, self.shortest);
-        let Room { uses, edges, starts, used, .. } = &mut self.room;
+    /// Finds the loops around a group of faces: edges between two faces of the group and seams (used twice by one face)
+    /// go, so do edges without length; what is left is chained again.
+    pub fn trace(&mut self, group: &[FaceId]) {
+        let (model, shapes, shortest) = (self.model, &self.shapes, self.shortest);
+        let Room { uses, counts, starts, used, .. } = &mut self.room;
+        let loops = || group.iter().flat_map(|face| &model.faces[face.index()].loops);
+        let edges = || loops().flat_map(|l| &l.uses).map(|u| u.edge);
+        edges().for_each(|edge| counts[edge.index()] += 1);
         uses.clear();
-        for face_loop in group.iter().flat_map(|face| &model.faces[face.index()].loops) {
-            uses.extend(face_loop.uses.iter().map(|&u| (u, face_loop.outer)));
+        for face_loop in loops() {
+            let kept = |u: &&EdgeUse| counts[u.edge.index()] == 1 && shapes.length(u.edge) > shortest;
+            uses.extend(face_loop.uses.iter().filter(kept).map(|&u| (u, face_loop.outer)));
         }
-        edges.clear();
-        edges.extend(uses.iter().map(|(u, _)| u.edge));
-        edges.sort_unstable();
-        let once = |edge: EdgeId| edges.get(edges.partition_point(|e| *e < edge) + 1) != Some(&edge);
-        uses.retain(|(u, _)| once(u.edge) && shapes.length(u.edge) > shortest);
+        edges().for_each(|edge| counts[edge.index()] = 0);
         starts.clear();
         starts.extend(uses.iter().enumerate().map(|(i, (edge_use, _))| (ends(model, edge_use).0, i)));
         starts.sort_unstable();
         used.clear();
         used.resize(uses.len(), false);
-        let mut loops = Vec::with_capacity(1);
-        for first in 0..used.len() {
+        self.loops.clear();
+        for first in 0..self.room.uses.len() {
             if self.chain(first) {
-                loops.push(self.boundary());
+                self.add_loop();
             }
         }
-        loops
     }
 
     /// Chains uses head to tail; false where the first one is in a chain already. A chain that does not close (a broken
@@ -108,24 +145,23 @@ impl<'a> Tracer<'a> {
         !chain.is_empty()
     }
 
-    /// The loop that the chain makes.
-    fn boundary(&self) -> Boundary {
+    /// Adds the loop that the chain makes.
+    fn add_loop(&mut self) {
         let chain = || self.room.chain.iter().map(|&i| self.room.uses[i]);
-        let count = chain().map(|(u, _)| self.shapes.count(u.edge)).sum();
-        let mut result = Boundary { points: Vec::with_capacity(count), ..Boundary::default() };
-        let Some((last, _)) = chain().next_back() else { return result };
-        let mut incoming = self.shapes.leaving(&last);
-        for (edge_use, outer) in chain() {
-            let first = result.points.len();
-            self.shapes.add_points(&edge_use, &mut result.points);
+        let Loops { loops, corners, points } = &mut self.loops;
+        let Some((last, _)) = chain().next_back() else { return };
+        let (mut incoming, mut length, mut outer) = (self.shapes.leaving(&last), 0.0, false);
+        for (edge_use, is_outer) in chain() {
+            let first = points.len();
+            self.shapes.add_points(&edge_use, points);
             if turn(&incoming, &self.shapes.entering(&edge_use)) > self.corner_angle {
-                result.corners.extend(result.points.get(first));
+                corners.extend(points.get(first));
             }
             incoming = self.shapes.leaving(&edge_use);
-            result.length += self.shapes.length(edge_use.edge);
-            result.outer |= outer;
+            length += self.shapes.length(edge_use.edge);
+            outer |= is_outer;
         }
-        result
+        loops.push(OneLoop { corners: corners.len(), points: points.len(), length, outer });
     }
 }
 
@@ -143,29 +179,41 @@ fn turn(a: &Vector, b: &Vector) -> f64 {
     a.cross(b).norm().atan2(a.dot(b))
 }
 
-/// The outline of a group from its loops.
-pub(super) fn outline(
+/// Adds the outline of a group from its loops.
+pub(super) fn add_outline(
+    out: &mut LocalOutlines,
     model: &Model,
-    group: Vec<FaceId>,
-    mut loops: Vec<Boundary>,
+    group: &[FaceId],
+    loops: &Loops,
     axis: Option<Axis>,
     oriented: bool,
-) -> LocalOutline {
-    let vector_area = loops.iter().map(Boundary::vector_area).sum();
-    let outer = outer_loop(model, &group, &loops).map(|i| loops.swap_remove(i)).unwrap_or_default();
-    let inner = loops.iter().map(|l| InnerLoop { centroid: l.centroid(), length: l.length }).collect();
-    LocalOutline { corners: outer.corners, perimeter: outer.length, faces: group, inner, vector_area, axis, oriented }
+) {
+    let vector_area = loops.iter().map(|l| l.vector_area()).sum();
+    let outer = outer_loop(model, group, loops);
+    let mut perimeter = 0.0;
+    if let Some(outer) = outer {
+        let last = loops.loops.len() - 1;
+        // The last one takes the place of the outer one.
+        let inner = (0..last).map(|i| loops.get(if i == outer { last } else { i }));
+        out.inner.extend(inner.map(|l| InnerLoop { centroid: l.centroid(), length: l.length }));
+        out.corners.extend_from_slice(loops.get(outer).corners);
+        perimeter = loops.get(outer).length;
+    }
+    out.faces.extend_from_slice(group);
+    let ends = [out.faces.len(), out.corners.len(), out.inner.len()];
+    out.outlines.push(LocalOutline { ends, perimeter, vector_area, axis, oriented });
 }
 
 /// Position of the outer loop: the one the file names where it names one, else the one that encloses most.
-fn outer_loop(model: &Model, group: &[FaceId], loops: &[Boundary]) -> Option<usize> {
-    let mut named = (0..loops.len()).filter(|&i| loops[i].outer);
+fn outer_loop(model: &Model, group: &[FaceId], loops: &Loops) -> Option<usize> {
+    let count = loops.loops.len();
+    let mut named = (0..count).filter(|&i| loops.loops[i].outer);
     if let (Some(only), None) = (named.next(), named.next()) {
         return Some(only);
     }
     let plane = group.iter().all(|f| is_plane(model, *f));
-    let extent = |l: &Boundary| if plane { l.vector_area().norm() } else { l.length };
-    (0..loops.len()).max_by(|&i, &j| extent(&loops[i]).total_cmp(&extent(&loops[j])).then(j.cmp(&i)))
+    let extent = |i: usize| if plane { loops.get(i).vector_area().norm() } else { loops.loops[i].length };
+    (0..count).max_by(|&i, &j| extent(i).total_cmp(&extent(j)).then(j.cmp(&i)))
 }
 
 fn is_plane(model: &Model, face: FaceId) -> bool {

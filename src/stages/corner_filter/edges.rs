@@ -33,7 +33,10 @@ pub(super) struct EdgeShapes {
 impl EdgeShapes {
     /// No shapes yet.
     pub fn new(model: &Model) -> Self {
-        Self { places: vec![NOWHERE; model.edges.len()], shapes: Vec::new(), points: Vec::new() }
+        let count = model.edges.len();
+        // Most edges are straight.
+        let points = Vec::with_capacity(2 * count);
+        Self { places: vec![NOWHERE; count], shapes: Vec::with_capacity(count), points }
     }
 
     /// Evaluates the edges of `faces`.
@@ -63,11 +66,6 @@ impl EdgeShapes {
         let points = &self.points[self.shape(edge_use.edge).points.clone()];
         let last = points.len() - 1;
         if edge_use.forward { out.extend_from_slice(&points[..last]) } else { out.extend(points[1..].iter().rev()) }
-    }
-
-    /// How many points [`Self::add_points`] adds.
-    pub fn count(&self, edge: EdgeId) -> usize {
-        self.shape(edge).points.len() - 1
     }
 
     /// Direction of travel at the beginning of the use.

@@ -3,50 +3,85 @@
 use crate::brep::{EdgeId, Face, FaceGeometry, FaceId, Model, Placement, Surface};
 use crate::cancel::{Cancel, Cancelled};
 
-/// Groups of faces that form one maximal face each, in the order of their first face. Without a tolerance (mm)
-/// every face is its own group.
-pub(super) fn groups(
-    model: &Model,
-    faces: &[FaceId],
-    tolerance: Option<f64>,
-    cancel: &Cancel,
-) -> Result<Vec<Vec<FaceId>>, Cancelled> {
-    let mut joined = Joined::new(faces.len());
-    if let Some(tolerance) = tolerance {
-        for (a, b) in adjacent(model, faces) {
-            cancel.check()?;
-            if joined.root(a) != joined.root(b) && continues(model, faces[a], faces[b], tolerance) {
-                joined.join(a, b);
-            }
-        }
-    }
-    Ok(joined.groups(faces))
+/// Groups of faces that form one maximal face each, found in one body after the other.
+#[derive(Default)]
+pub(super) struct Groups {
+    /// For each edge of the model the faces of the body that use it.
+    users: Vec<Users>,
+    joined: Joined,
+    /// The faces of one group after the other, and where each group ends.
+    faces: Vec<FaceId>,
+    ends: Vec<usize>,
 }
 
-/// Positions of two faces that share an edge which no third face uses, in the order of the edges.
-fn adjacent(model: &Model, faces: &[FaceId]) -> Vec<(usize, usize)> {
-    let count = faces.iter().flat_map(|face| &model.faces[face.index()].loops).map(|l| l.uses.len()).sum();
-    let mut users: Vec<(EdgeId, usize)> = Vec::with_capacity(count);
-    for (i, face) in faces.iter().enumerate() {
-        let uses = model.faces[face.index()].loops.iter().flat_map(|l| &l.uses);
-        users.extend(uses.map(|u| (u.edge, i)));
+/// How often an edge is used, and the positions of the faces that use it first and second.
+#[derive(Clone, Copy, Default)]
+struct Users {
+    count: u32,
+    faces: [u32; 2],
+}
+
+impl Groups {
+    /// No groups yet.
+    pub fn new(model: &Model) -> Self {
+        Self { users: vec![Users::default(); model.edges.len()], ..Self::default() }
     }
-    users.sort_unstable();
-    let of_edges = users.chunk_by(|a, b| a.0 == b.0);
-    let mut pairs: Vec<_> = of_edges
-        .filter_map(|users| match users {
-            [(_, a), (_, b)] if a != b => Some((*a, *b)),
-            _ => None,
-        })
-        .collect();
-    pairs.sort_unstable();
-    pairs.dedup();
-    pairs
+
+    /// Finds the groups of these faces. Without a tolerance (mm) every face is its own group.
+    pub fn find(
+        &mut self,
+        model: &Model,
+        faces: &[FaceId],
+        tolerance: Option<f64>,
+        cancel: &Cancel,
+    ) -> Result<(), Cancelled> {
+        self.joined.clear(faces.len());
+        if let Some(tolerance) = tolerance {
+            self.note_users(model, faces);
+            for (i, edge) in edges_of(model, faces) {
+                let Users { count, faces: [a, b] } = self.users[edge.index()];
+                // What more than two faces use, or one twice, joins none.
+                if count != 2 || a != i || b == i {
+                    continue;
+                }
+                cancel.check()?;
+                let both = [a, b].map(|i| faces[i as usize]);
+                if self.joined.root(a) != self.joined.root(b) && continues(model, both, tolerance) {
+                    self.joined.join(a, b);
+                }
+            }
+        }
+        self.joined.groups(faces, &mut self.faces, &mut self.ends);
+        Ok(())
+    }
+
+    /// The groups in the order of their first faces.
+    pub fn iter(&self) -> impl Iterator<Item = &[FaceId]> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(from, to)| &self.faces[from..*to])
+    }
+
+    fn note_users(&mut self, model: &Model, faces: &[FaceId]) {
+        edges_of(model, faces).for_each(|(_, edge)| self.users[edge.index()].count = 0);
+        for (i, edge) in edges_of(model, faces) {
+            let users = &mut self.users[edge.index()];
+            if let Some(place) = users.faces.get_mut(users.count as usize) {
+                *place = i;
+            }
+            users.count += 1;
+        }
+    }
+}
+
+/// The edges of faces, each with the position of its face.
+fn edges_of<'a>(model: &'a Model, faces: &'a [FaceId]) -> impl Iterator<Item = (u32, EdgeId)> + 'a {
+    let loops = (0..).zip(faces).flat_map(|(i, face)| model.faces[face.index()].loops.iter().map(move |l| (i, l)));
+    loops.flat_map(|(i, l)| l.uses.iter().map(move |u| (i, u.edge)))
 }
 
 /// Whether both faces lie on one surface with the same side out.
-fn continues(model: &Model, a: FaceId, b: FaceId, tolerance: f64) -> bool {
-    let (a, b) = (&model.faces[a.index()], &model.faces[b.index()]);
+fn continues(model: &Model, faces: [FaceId; 2], tolerance: f64) -> bool {
+    let [a, b] = faces.map(|face| &model.faces[face.index()]);
     let (Some((s, s_sense)), Some((t, t_sense))) = (surface(a), surface(b)) else { return false };
     match same_surface(s, t, tolerance) {
         Some(Side::Same) => s_sense == t_sense,
@@ -120,40 +155,57 @@ fn same_axis(p: &Placement, q: &Placement, tolerance: f64) -> bool {
 }
 
 /// Disjoint sets of positions; the root of a set is its smallest member.
-struct Joined(Vec<usize>);
+#[derive(Default)]
+struct Joined {
+    towards_root: Vec<u32>,
+    /// Of each root, where its next face goes.
+    places: Vec<usize>,
+}
 
 impl Joined {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
+    /// Each of `count` positions by itself.
+    fn clear(&mut self, count: usize) {
+        self.towards_root.clear();
+        self.towards_root.extend(0..count as u32);
     }
 
-    fn root(&mut self, mut i: usize) -> usize {
-        while self.0[i] != i {
-            self.0[i] = self.0[self.0[i]];
-            i = self.0[i];
+    fn root(&mut self, mut i: u32) -> u32 {
+        let next = &mut self.towards_root;
+        while next[i as usize] != i {
+            next[i as usize] = next[next[i as usize] as usize];
+            i = next[i as usize];
         }
         i
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
+        self.towards_root[a.max(b) as usize] = a.min(b);
     }
 
-    /// The sets, of what stands at these positions in `faces`.
-    fn groups(mut self, faces: &[FaceId]) -> Vec<Vec<FaceId>> {
-        let mut at = vec![usize::MAX; self.0.len()];
-        let mut groups: Vec<Vec<FaceId>> = Vec::with_capacity(self.0.len());
-        for (i, &face) in faces.iter().enumerate() {
+    /// The sets, one after the other in the order of their roots, of what stands at these positions in `faces`.
+    fn groups(&mut self, faces: &[FaceId], out: &mut Vec<FaceId>, ends: &mut Vec<usize>) {
+        let count = self.towards_root.len() as u32;
+        self.places.clear();
+        self.places.resize(faces.len(), 0);
+        for i in 0..count {
             let root = self.root(i);
-            if root == i {
-                at[i] = groups.len();
-                groups.push(vec![face]);
-            } else {
-                groups[at[root]].push(face);
-            }
+            self.places[root as usize] += 1;
         }
-        groups
+        ends.clear();
+        let mut end = 0;
+        for i in (0..count as usize).filter(|&i| self.towards_root[i] == i as u32) {
+            let size = std::mem::replace(&mut self.places[i], end);
+            end += size;
+            ends.push(end);
+        }
+        out.clear();
+        out.resize(faces.len(), FaceId(0));
+        for (i, face) in (0..count).zip(faces) {
+            let place = &mut self.places[self.towards_root[i as usize] as usize];
+            out[*place] = *face;
+            *place += 1;
+        }
     }
 }
 
@@ -185,6 +237,17 @@ mod tests {
             |half_angle| Surface::Cone { placement: placement([0.0, 0.0, 2.0], -Vector::z()), radius: 3.0, half_angle };
         assert_eq!(same_surface(&up, &down(-quarter), 1e-6), Some(Side::Same));
         assert_eq!(same_surface(&up, &down(quarter), 1e-6), None);
+    }
+
+    #[test]
+    fn joined_positions_stand_side_by_side() {
+        let mut joined = Joined::default();
+        joined.clear(6);
+        [(5, 1), (4, 2), (1, 3)].iter().for_each(|&(a, b)| joined.join(a, b));
+        let faces = [10, 11, 12, 13, 14, 15].map(FaceId);
+        let (mut out, mut ends) = (Vec::new(), Vec::new());
+        joined.groups(&faces, &mut out, &mut ends);
+        assert_eq!((out, ends), ([10, 11, 13, 15, 12, 14].map(FaceId).to_vec(), vec![1, 4, 6]));
     }
 
     #[test]

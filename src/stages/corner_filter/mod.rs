@@ -14,13 +14,17 @@ mod boundary;
 mod edges;
 mod maximal;
 
-use crate::brep::{BodyId, PlacedFaceId};
+use std::ops::Range;
+
+use smallvec::SmallVec;
+
+use crate::brep::{BodyId, FaceId, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Axis, Point, Transform, Vector};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
 use boundary::Tracer;
-use edges::EdgeShapes;
+use maximal::Groups;
 
 /// Settings of the stage.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -63,10 +67,10 @@ pub struct InnerLoop {
 /// A maximal face as matching sees it, in place.
 #[derive(Clone, Debug)]
 pub struct Outline {
-    /// The faces it is made of, in growing order.
-    pub faces: Vec<PlacedFaceId>,
-    /// Corners of the outer loop; with the face normal up, the inside is on the left.
-    pub corners: Vec<Point>,
+    /// The faces it is made of, in growing order: one for most.
+    pub faces: SmallVec<[PlacedFaceId; 4]>,
+    /// Corners of the outer loop; with the face normal up, the inside is on the left. Most have four.
+    pub corners: SmallVec<[Point; 4]>,
     /// Arc length of the outer loop, mm.
     pub perimeter: f64,
     /// Its holes.
@@ -101,49 +105,73 @@ pub struct Shape {
 /// Only when cancelled.
 pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Result<Vec<Outline>, ModelError> {
     let model = &parsed.model;
-    let placed = placed_faces(parsed);
-    let mut of_body: Vec<Option<Vec<LocalOutline>>> = vec![None; model.bodies.len()];
+    let cancelled = |c| ModelError::cancelled(Stage::CornerFilter, c);
+    let placed = AllPlaced::new(parsed);
+    let mut finder = Finder::new(parsed, options, cancel);
+    let mut of_body: Vec<Option<Range<usize>>> = vec![None; model.bodies.len()];
     let mut outlines = Vec::with_capacity(parsed.mesh.faces.len());
     let mut uses = vec![0u32; model.bodies.len()];
     model.occurrences.iter().for_each(|occurrence| uses[occurrence.body.index()] += 1);
-    let mut shapes = EdgeShapes::new(model);
-    for (occurrence, faces) in model.occurrences.iter().zip(&placed) {
-        let cancelled = |c| ModelError::cancelled(Stage::CornerFilter, c);
+    for (index, occurrence) in model.occurrences.iter().enumerate() {
         cancel.check().map_err(cancelled)?;
-        let local = match &mut of_body[occurrence.body.index()] {
-            Some(local) => local,
-            none => {
-                let placement = &occurrence.placement;
-                let found = body_outlines(parsed, occurrence.body, faces, placement, &mut shapes, options, cancel);
-                none.insert(found.map_err(cancelled)?)
-            }
+        let (body, faces, placement) = (occurrence.body, placed.of(index), &occurrence.placement);
+        let local = match &of_body[body.index()] {
+            Some(local) => local.clone(),
+            None => finder.find(body, faces, placement).map_err(cancelled)?,
         };
-        let place = Place::new(&occurrence.placement);
-        let is_shared = uses[occurrence.body.index()] > 1;
-        let placed = |(number, outline): (u32, &LocalOutline)| {
-            outline.placed(parsed, faces, &place, is_shared.then_some((occurrence.body, number)))
+        let place = Place::new(placement);
+        let is_shared = uses[body.index()] > 1;
+        let placed = |(number, outline): (u32, usize)| {
+            finder.found.placed(outline, parsed, faces, &place, is_shared.then_some((body, number)))
         };
-        outlines.extend((0..).zip(local.iter()).filter_map(placed));
+        outlines.extend((0..).zip(local.clone()).filter_map(placed));
+        of_body[body.index()] = Some(local);
     }
     Ok(outlines)
 }
 
-/// Where the faces of each occurrence are in the mesh, as pairs (face, place) sorted by face.
-fn placed_faces(parsed: &Parsed) -> Vec<PlacedFaces> {
-    let mut placed = vec![PlacedFaces::default(); parsed.model.occurrences.len()];
-    for (i, face) in parsed.mesh.faces.iter().enumerate() {
-        placed[face.occurrence as usize].0.push((face.face.0, i as u32));
+/// Where the faces of each occurrence are in the mesh: pairs (face, place), sorted by face, of one occurrence after the
+/// other.
+struct AllPlaced {
+    pairs: Vec<(u32, u32)>,
+    /// Where the pairs of each occurrence end.
+    ends: Vec<usize>,
+}
+
+impl AllPlaced {
+    fn new(parsed: &Parsed) -> Self {
+        let faces = &parsed.mesh.faces;
+        let mut pairs: Vec<_> = (0..).zip(faces).map(|(i, face)| (face.face.0, i)).collect();
+        let mut ends = Vec::with_capacity(parsed.model.occurrences.len());
+        let mut end = 0;
+        for occurrence in 0..parsed.model.occurrences.len() as u32 {
+            let from = end;
+            end += faces[from..].iter().take_while(|face| face.occurrence == occurrence).count();
+            pairs[from..end].sort_unstable();
+            ends.push(end);
+        }
+        Self { pairs, ends }
     }
-    placed.iter_mut().for_each(|faces| faces.0.sort_unstable());
-    placed
+
+    fn of(&self, occurrence: usize) -> PlacedFaces<'_> {
+        let from = occurrence.checked_sub(1).map_or(0, |before| self.ends[before]);
+        PlacedFaces(&self.pairs[from..self.ends[occurrence]])
+    }
 }
 
 /// The faces of one occurrence that have a mesh.
-#[derive(Clone, Debug, Default)]
-struct PlacedFaces(Vec<(u32, u32)>);
+#[derive(Clone, Copy, Debug)]
+struct PlacedFaces<'a>(&'a [(u32, u32)]);
 
-impl PlacedFaces {
-    fn find(&self, face: crate::brep::FaceId) -> Option<PlacedFaceId> {
+impl PlacedFaces<'_> {
+    fn find(&self, face: FaceId) -> Option<PlacedFaceId> {
+        // Most bodies have their faces one after the other and none is left out: then this guess is right.
+        let guess = face.0.checked_sub(self.0.first()?.0)? as usize;
+        if let Some(&(found, place)) = self.0.get(guess)
+            && found == face.0
+        {
+            return Some(PlacedFaceId(place));
+        }
         let at = self.0.binary_search_by_key(&face.0, |&(face, _)| face).ok()?;
         Some(PlacedFaceId(self.0[at].1))
     }
@@ -164,31 +192,43 @@ impl<'a> Place<'a> {
     }
 }
 
-/// An outline in the coordinates of its body, the same for all occurrences.
-#[derive(Clone, Debug)]
-struct LocalOutline {
-    faces: Vec<crate::brep::FaceId>,
+/// Outlines in the coordinates of their bodies, the same for all occurrences.
+#[derive(Default)]
+struct LocalOutlines {
+    outlines: Vec<LocalOutline>,
+    faces: Vec<FaceId>,
     corners: Vec<Point>,
-    perimeter: f64,
     inner: Vec<InnerLoop>,
+}
+
+/// An outline whose faces, corners and inner loops end here, and begin where those of the one before end.
+struct LocalOutline {
+    ends: [usize; 3],
+    perimeter: f64,
     /// Half the sum of p x q along all loops: the vector area they enclose if they run as they should.
     vector_area: Vector,
     axis: Option<Axis>,
     oriented: bool,
 }
 
-impl LocalOutline {
-    /// The outline in its occurrence; `None` where the mesh has none of its faces. Where several occurrences share it,
-    /// `shared` names its body and its number there.
+impl LocalOutlines {
+    /// One of the outlines in its occurrence; `None` where the mesh has none of its faces. Where several occurrences
+    /// share it, `shared` names its body and its number there.
     fn placed(
         &self,
+        index: usize,
         parsed: &Parsed,
-        places: &PlacedFaces,
+        places: PlacedFaces,
         place: &Place,
         shared: Option<(BodyId, u32)>,
     ) -> Option<Outline> {
-        let placement = place.placement;
-        let mut faces: Vec<_> = self.faces.iter().filter_map(|&f| places.find(f)).collect();
+        let (placement, scale) = (place.placement, place.scale);
+        let outline = &self.outlines[index];
+        let [first_face, first_corner, first_inner] =
+            index.checked_sub(1).map_or([0; 3], |before| self.outlines[before].ends);
+        let [end_face, end_corner, end_inner] = outline.ends;
+        let mut faces: SmallVec<[PlacedFaceId; 4]> =
+            self.faces[first_face..end_face].iter().filter_map(|&f| places.find(f)).collect();
         faces.sort_unstable();
         let area: f64 = faces.iter().map(|f| parsed.mesh.faces[f.index()].area).sum();
         if !(area > 0.0 && area.is_finite()) {
@@ -196,29 +236,33 @@ impl LocalOutline {
         }
         let moment: Vector =
             faces.iter().map(|f| &parsed.mesh.faces[f.index()]).map(|f| f.centroid.coords * f.area).sum();
-        let scale = place.scale;
-        let mut corners: Vec<_> = self.corners.iter().map(|p| placement.point(p)).collect();
-        let backwards = self.runs_backwards(parsed, &faces, place);
+        let mut corners: SmallVec<[Point; 4]> =
+            self.corners[first_corner..end_corner].iter().map(|p| placement.point(p)).collect();
+        let backwards = outline.runs_backwards(parsed, &faces, place);
         if backwards {
             corners.reverse();
         }
+        let inner = self.inner[first_inner..end_inner].iter();
         let inner =
-            self.inner.iter().map(|l| InnerLoop { centroid: placement.point(&l.centroid), length: l.length * scale });
-        let axis =
-            self.axis.map(|a| Axis { point: placement.point(&a.point), direction: placement.direction(&a.direction) });
+            inner.map(|l| InnerLoop { centroid: placement.point(&l.centroid), length: l.length * scale }).collect();
+        let axis = outline
+            .axis
+            .map(|a| Axis { point: placement.point(&a.point), direction: placement.direction(&a.direction) });
         Some(Outline {
             corners,
-            perimeter: self.perimeter * scale,
-            inner: inner.collect(),
+            perimeter: outline.perimeter * scale,
+            inner,
             area,
             centroid: Point::from(moment / area),
             axis,
-            oriented: self.oriented,
+            oriented: outline.oriented,
             shape: shared.map(|(body, number)| Shape { body, number, backwards, scale: scale.to_bits() }),
             faces,
         })
     }
+}
 
+impl LocalOutline {
     /// Whether the loops enclose the opposite of the mesh's vector area (Stokes): files break the rule of the left
     /// side, and a mirroring placement turns it round.
     fn runs_backwards(&self, parsed: &Parsed, faces: &[PlacedFaceId], place: &Place) -> bool {
@@ -232,29 +276,45 @@ impl LocalOutline {
     }
 }
 
-/// The outlines of a body.
-fn body_outlines(
-    parsed: &Parsed,
-    body: BodyId,
-    places: &PlacedFaces,
-    placement: &Transform,
-    shapes: &mut EdgeShapes,
-    options: &Options,
-    cancel: &Cancel,
-) -> Result<Vec<LocalOutline>, Cancelled> {
-    let model = &parsed.model;
-    let size = parsed.measures.tolerance.size() / placement.scale();
-    let tolerance = options.same_surface * size;
-    let faces: Vec<_> = model.faces_of(body).filter(|&f| places.find(f).is_some()).collect();
-    shapes.add(model, &faces);
-    let mut tracer = Tracer::new(model, shapes, 1e-3 * tolerance, options.corner_angle_deg.to_radians());
-    let groups = maximal::groups(model, &faces, options.maximal_faces.then_some(tolerance), cancel)?;
-    let oriented = model.bodies[body.index()].solid;
-    let outline = |group: Vec<crate::brep::FaceId>| {
-        cancel.check()?;
-        let loops = tracer.loops(&group);
-        let axis = if options.axes { axial::axis(parsed, places, &group, &loops, placement, tolerance) } else { None };
-        Ok(boundary::outline(model, group, loops, axis, oriented))
-    };
-    groups.into_iter().map(outline).collect()
+/// Finds the outlines of one body after the other, in the same memory.
+struct Finder<'a> {
+    parsed: &'a Parsed,
+    options: &'a Options,
+    cancel: &'a Cancel,
+    faces: Vec<FaceId>,
+    groups: Groups,
+    tracer: Tracer<'a>,
+    found: LocalOutlines,
+}
+
+impl<'a> Finder<'a> {
+    fn new(parsed: &'a Parsed, options: &'a Options, cancel: &'a Cancel) -> Self {
+        let model = &parsed.model;
+        let tracer = Tracer::new(model, options.corner_angle_deg.to_radians());
+        let (faces, groups, found) = (Vec::new(), Groups::new(model), LocalOutlines::default());
+        Self { parsed, options, cancel, faces, groups, tracer, found }
+    }
+
+    /// The outlines of a body, by their places among those found; one occurrence of it says where its faces are.
+    fn find(&mut self, body: BodyId, places: PlacedFaces, placement: &Transform) -> Result<Range<usize>, Cancelled> {
+        let Self { parsed, options, tracer, .. } = self;
+        let model = &parsed.model;
+        let tolerance = options.same_surface * (parsed.measures.tolerance.size() / placement.scale());
+        self.faces.clear();
+        self.faces.extend(model.faces_of(body).filter(|&f| places.find(f).is_some()));
+        tracer.shapes.add(model, &self.faces);
+        tracer.shortest = 1e-3 * tolerance;
+        self.groups.find(model, &self.faces, options.maximal_faces.then_some(tolerance), self.cancel)?;
+        let first = self.found.outlines.len();
+        let oriented = model.bodies[body.index()].solid;
+        for group in self.groups.iter() {
+            self.cancel.check()?;
+            tracer.trace(group);
+            let loops = &tracer.loops;
+            let axis =
+                if options.axes { axial::axis(parsed, places, group, loops, placement, tolerance) } else { None };
+            boundary::add_outline(&mut self.found, model, group, loops, axis, oriented);
+        }
+        Ok(first..self.found.outlines.len())
+    }
 }

@@ -121,7 +121,7 @@ mod tests {
     fn outline(n: usize, area: f64, perimeter: f64) -> Outline {
         let corner = |i: usize| crate::geometry::Point::new(i as f64, 0.0, 0.0);
         Outline {
-            faces: Vec::new(),
+            faces: Default::default(),
             corners: (0..n).map(corner).collect(),
             perimeter,
             inner: Vec::new(),
