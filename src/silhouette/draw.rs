@@ -7,10 +7,10 @@ use std::cmp::Reverse;
 
 use crate::brep::{Mesh, MeshFace, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::order::{less, more};
+use crate::geometry::order::{ascending, less, more};
 use crate::geometry::{Point, Vector};
 
-use super::Silhouette;
+use super::{Silhouette, fill};
 
 /// A square picture and where the model lies in it.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,11 @@ impl Raster {
     pub fn project(&self, mesh: &Mesh, axis: &Vector) -> Coordinates {
         let (middle, end) = (0.5 * self.side as f64, self.side as f64);
         let along = |p: &Point| (middle + self.scale * axis.dot(&(p - self.centre))).clamp(0.0, end);
-        let exact: Vec<_> = mesh.points.iter().map(along).collect();
-        let cells: Vec<_> = exact.iter().map(|&c| (c as u16).min(self.side as u16 - 1)).collect();
+        let (mut exact, mut cells) = (vec![0.0; mesh.points.len()], vec![0; mesh.points.len()]);
+        for ((exact, cell), p) in exact.iter_mut().zip(&mut cells).zip(&mesh.points) {
+            *exact = along(p);
+            *cell = (*exact as u16).min(self.side as u16 - 1);
+        }
         let points = |face: &MeshFace| face.points.start as usize..face.points.end as usize;
         let faces = mesh.faces.iter().map(|face| bounds(&cells[points(face)])).collect();
         Coordinates { exact, cells, faces }
@@ -53,8 +56,14 @@ impl Raster {
         let mut faces: Vec<_> = (0..mesh.faces.len()).map(|n| (Reverse(boxed(n).area()), n as u32)).collect();
         faces.sort_unstable();
         for number in faces.into_iter().map(|(_, number)| number as usize) {
-            if !boxed(number).are_covered(&picture) {
-                let triangles = &mesh.triangles[mesh.triangles_of(PlacedFaceId(number as u32))];
+            let pixels = boxed(number);
+            if pixels.are_covered(&picture) {
+                continue;
+            }
+            let triangles = &mesh.triangles[mesh.triangles_of(PlacedFaceId(number as u32))];
+            if pixels.are_filled_by(triangles, [x, y]) {
+                pixels.fill(&mut picture);
+            } else {
                 draw_face(&mut picture, triangles, [x, y], cancel)?;
             }
         }
@@ -79,6 +88,31 @@ impl Pixels {
         let ([first, last], [low, high]) = (self.x.map(usize::from), self.y.map(usize::from));
         picture.covers(low..high + 1, first, last + 1)
     }
+
+    fn fill(&self, picture: &mut Silhouette) {
+        let ([first, last], [low, high]) = (self.x.map(usize::from), self.y.map(usize::from));
+        picture.rows_mut(low..high + 1).for_each(|row| fill(row, first, last));
+    }
+
+    /// Whether two triangles are a quadrilateral with a corner in each corner of the box: it touches all pixels there.
+    fn are_filled_by(&self, triangles: &[[u32; 3]], [x, y]: [&Coordinates; 2]) -> bool {
+        let [one, other] = triangles else { return false };
+        // The corners of the box that a triangle leaves out, a bit for each: one alone if its corners are the others.
+        let left_out = |triangle: &[u32; 3]| {
+            triangle.iter().fold(0b1111, |left, &i| {
+                let (x, y) = (x.cells[i as usize], y.cells[i as usize]);
+                match (x == self.x[0], x == self.x[1], y == self.y[0], y == self.y[1]) {
+                    (true, false, true, false) => left & 0b1110,
+                    (false, true, true, false) => left & 0b1101,
+                    (true, false, false, true) => left & 0b1011,
+                    (false, true, false, true) => left & 0b0111,
+                    _ => left,
+                }
+            })
+        };
+        // Opposite ones: the triangles share the diagonal between the two others.
+        matches!((left_out(one), left_out(other)), (1, 8) | (8, 1) | (2, 4) | (4, 2))
+    }
 }
 
 /// The least and the largest of some cells.
@@ -95,22 +129,21 @@ struct Corner {
     row: u16,
 }
 
-/// The side of a triangle between two of its corners, the lower one first.
+/// The side of a triangle, from its lower end.
 struct Side {
     from: Corner,
-    to: Corner,
     slope: f64,
 }
 
 impl Side {
     fn up(from: Corner, to: Corner) -> Self {
-        Self { from, to, slope: (to.x - from.x) / (to.y - from.y) }
+        Self { from, slope: (to.x - from.x) / (to.y - from.y) }
     }
 
-    /// Where it leaves a row upward, or ends in it.
+    /// Where it passes a height.
     #[inline]
-    fn leaves(&self, row: u16) -> f64 {
-        if row < self.to.row { self.from.x + self.slope * (f64::from(row + 1) - self.from.y) } else { self.to.x }
+    fn at(&self, height: f64) -> f64 {
+        self.from.x + self.slope * (height - self.from.y)
     }
 }
 
@@ -135,24 +168,25 @@ fn draw_face(
 }
 
 /// Covers every pixel that the triangle touches.
-fn touch(picture: &mut Silhouette, mut corners: [Corner; 3], pixels: &Pixels) {
+fn touch(picture: &mut Silhouette, corners: [Corner; 3], pixels: &Pixels) {
     let [low, high] = pixels.y;
-    if low == high {
-        return picture.fill(low.into(), pixels.x[0].into(), usize::from(pixels.x[1]) + 1);
+    if low == high || pixels.x[0] == pixels.x[1] {
+        return pixels.fill(picture);
     }
-    corners.sort_unstable_by(|a, b| a.y.total_cmp(&b.y));
-    let [a, b, c] = corners;
+    let [a, b, c] = ascending(corners, |corner| corner.y);
     let (long, lower, upper) = (Side::up(a, c), Side::up(a, b), Side::up(b, c));
-    let side = picture.side() as u32;
-    let mut entered = [a.x; 2];
-    for row in low..=high {
-        let left = ordered(long.leaves(row), if row < b.row { lower.leaves(row) } else { upper.leaves(row) });
-        let mut span = [less(entered[0], left[0]), more(entered[1], left[1])];
+    let end = picture.side() as u32 - 1;
+    let (mut short, mut entered, mut top) = (&lower, [a.x; 2], f64::from(low));
+    for (row, bits) in (low..=high).zip(picture.rows_mut(low.into()..usize::from(high) + 1)) {
+        top += 1.0;
         if row == b.row {
-            span = [less(span[0], b.x), more(span[1], b.x)];
+            short = &upper;
+            entered = [less(entered[0], b.x), more(entered[1], b.x)];
         }
-        let [first, last] = span.map(|x| (x as u32).min(side - 1) as usize);
-        picture.fill(row.into(), first, last + 1);
+        let left = if row < high { ordered(long.at(top), short.at(top)) } else { [c.x; 2] };
+        let span = [less(entered[0], left[0]), more(entered[1], left[1])];
+        let [first, last] = span.map(|x| (x as u32).min(end) as usize);
+        fill(bits, first, last);
         entered = left;
     }
 }
@@ -200,6 +234,34 @@ mod tests {
         let raster = Raster { centre: Point::new(2.0, 1.0, 0.0), scale: 1.9, side: 10 };
         let picture = drawn(&shapes::rectangle(4.0, 2.0), &raster, [Vector::x(), Vector::z()]);
         assert_eq!(picture.area(), 8);
+    }
+
+    /// Quadrilaterals with a corner in each corner of their box, and others: as one face and as two of a triangle each.
+    #[test]
+    fn two_triangles_cover_the_same_as_one_face_and_as_two() {
+        let raster = Raster { centre: Point::new(8.0, 8.0, 0.0), scale: 1.0, side: 16 };
+        let mut filled = 0;
+        for number in 0..400 {
+            let off = |i: u32| f64::from((number * (2 * i + 3) + i * i) % 10) * 0.12;
+            let corner = |x: f64, y: f64, i: u32| Point::new(x + off(2 * i), y + off(2 * i + 1), 0.0);
+            let points = vec![corner(2.0, 3.0, 0), corner(9.0, 3.0, 1), corner(9.0, 12.0, 2), corner(2.0, 12.0, 3)];
+            let triangles = match number % 3 {
+                0 => vec![[0, 1, 2], [0, 2, 3]],
+                1 => vec![[1, 3, 0], [3, 1, 2]],
+                _ => vec![[0, 1, 2], [0, 1, 3]],
+            };
+            let whole = shapes::mesh(points, triangles);
+            let mut halves = whole.clone();
+            let (mut first, mut second) = (whole.faces[0].clone(), whole.faces[0].clone());
+            (first.triangles, second.triangles) = (0..1, 1..2);
+            halves.faces = vec![first, second];
+            let [one, two] = [&whole, &halves].map(|mesh| drawn(mesh, &raster, [Vector::x(), Vector::y()]));
+            assert_eq!(one, two, "{number}");
+            let [x, y] = [Vector::x(), Vector::y()].map(|axis| raster.project(&whole, &axis));
+            let pixels = Pixels { x: x.faces[0], y: y.faces[0] };
+            filled += usize::from(pixels.are_filled_by(&whole.triangles, [&x, &y]));
+        }
+        assert!((20..300).contains(&filled), "{filled}");
     }
 
     #[test]

@@ -26,8 +26,9 @@ impl Silhouette {
 
     /// Whether a pixel is covered; outside the picture none is.
     pub fn get(&self, x: isize, y: isize) -> bool {
-        let inside = |c: isize| (0..self.side as isize).contains(&c);
-        inside(x) && inside(y) && self.row(y as usize)[x as usize / 64] >> (x as usize % 64) & 1 == 1
+        // Negative ones come out as large ones.
+        let [x, y] = [x, y].map(|c| c as usize);
+        x < self.side && y < self.side && self.bits[y * self.words + x / 64] >> (x % 64) & 1 == 1
     }
 
     /// The bits of a row, lowest x first.
@@ -35,27 +36,49 @@ impl Silhouette {
         &self.bits[y * self.words..(y + 1) * self.words]
     }
 
+    /// The bits of some rows, one after the other.
+    fn rows_mut(&mut self, rows: Range<usize>) -> impl Iterator<Item = &mut [u64]> {
+        self.bits[rows.start * self.words..rows.end * self.words].chunks_exact_mut(self.words.max(1))
+    }
+
+    /// Calls `run` for the covered pixels of each row, from the lowest row up and from left to right, as many as stand
+    /// side by side at once: row, first pixel, end.
+    pub fn each_run(&self, mut run: impl FnMut(usize, usize, usize)) {
+        for (y, row) in self.bits.chunks_exact(self.words.max(1)).enumerate() {
+            let (mut carry, mut begun) = (0, None);
+            for (number, &word) in row.iter().enumerate() {
+                let mut changes = word ^ (word << 1 | carry);
+                carry = word >> 63;
+                while changes != 0 {
+                    let x = 64 * number + changes.trailing_zeros() as usize;
+                    changes &= changes - 1;
+                    match begun.take() {
+                        Some(first) => run(y, first, x),
+                        None => begun = Some(x),
+                    }
+                }
+            }
+            if let Some(first) = begun {
+                run(y, first, self.side);
+            }
+        }
+    }
+
     /// Covered pixels.
     pub fn area(&self) -> usize {
-        let mixed = |word: &&u64| !matches!(**word, 0 | u64::MAX);
-        let full = self.bits.iter().filter(|word| **word == u64::MAX).count();
-        64 * full + self.bits.iter().filter(mixed).map(|word| word.count_ones() as usize).sum::<usize>()
+        let mut area = 0;
+        self.each_run(|_, first, end| area += end - first);
+        area
     }
 
     /// Centroid of the covered pixels (pixel centres are at halves); `None` for an empty picture.
     pub fn centroid(&self) -> Option<[f64; 2]> {
-        let (mut x, mut y, mut count) = (0.0, 0.0, 0.0);
-        for row in 0..self.side {
-            for (number, &word) in self.row(row).iter().enumerate().filter(|(_, word)| **word != 0) {
-                let (ones, positions) =
-                    if word == u64::MAX { (64, 2016) } else { (word.count_ones(), bit_positions(word)) };
-                let ones = f64::from(ones);
-                x += ones * ((64 * number) as f64 + 0.5) + f64::from(positions);
-                y += ones * (row as f64 + 0.5);
-                count += ones;
-            }
-        }
-        (count > 0.0).then(|| [x / count, y / count])
+        let (mut doubled, mut count) = ([0; 2], 0);
+        self.each_run(|y, first, end| {
+            doubled = [doubled[0] + (end - first) * (first + end), doubled[1] + (end - first) * (2 * y + 1)];
+            count += end - first;
+        });
+        (count > 0).then(|| doubled.map(|sum| 0.5 * sum as f64 / count as f64))
     }
 
     /// Covered pixels of row `y` with first <= x < end.
@@ -76,26 +99,23 @@ impl Silhouette {
     /// Whether all pixels of some rows with first <= x < end are covered.
     pub fn covers(&self, rows: Range<usize>, first: usize, end: usize) -> bool {
         let (words, [low, high]) = ends(first, end);
-        rows.map(|y| &self.row(y)[words.clone()]).all(|row| match row {
-            [] => true,
-            [word] => !word & low & high == 0,
-            [left, between @ .., right] => {
-                !left & low == 0 && !right & high == 0 && between.iter().all(|word| *word == u64::MAX)
-            }
-        })
+        let mut rows = self.bits[rows.start * self.words..rows.end * self.words].chunks_exact(self.words.max(1));
+        match words.len() {
+            0 => true,
+            1 => rows.all(|row| !row[words.start] & low & high == 0),
+            _ => rows.all(|row| match &row[words.clone()] {
+                [left, between @ .., right] => {
+                    !left & low == 0 && !right & high == 0 && between.iter().all(|word| *word == u64::MAX)
+                }
+                _ => true,
+            }),
+        }
     }
 
     /// Covers the pixels of row `y` with first <= x < end.
     pub fn fill(&mut self, y: usize, first: usize, end: usize) {
-        let (words, [low, high]) = ends(first, end);
-        match &mut self.bits[y * self.words..(y + 1) * self.words][words] {
-            [] => {}
-            [word] => *word |= low & high,
-            [left, between @ .., right] => {
-                *left |= low;
-                *right |= high;
-                between.fill(u64::MAX);
-            }
+        if first < end {
+            fill(&mut self.bits[y * self.words..(y + 1) * self.words], first, end - 1);
         }
     }
 
@@ -167,18 +187,18 @@ fn ends(first: usize, end: usize) -> (Range<usize>, [u64; 2]) {
     (first / 64..(end - 1) / 64 + 1, [u64::MAX << (first % 64), u64::MAX >> (63 - (end - 1) % 64)])
 }
 
-/// The sum of the positions of a word's ones.
-fn bit_positions(word: u64) -> u32 {
-    // The ones whose position has binary digit k count 2^k each.
-    const DIGITS: [u64; 6] = [
-        0xAAAA_AAAA_AAAA_AAAA,
-        0xCCCC_CCCC_CCCC_CCCC,
-        0xF0F0_F0F0_F0F0_F0F0,
-        0xFF00_FF00_FF00_FF00,
-        0xFFFF_0000_FFFF_0000,
-        0xFFFF_FFFF_0000_0000,
-    ];
-    DIGITS.iter().enumerate().map(|(k, digit)| (word & digit).count_ones() << k).sum()
+/// Covers the pixels of a row from the first to the last of some.
+#[inline]
+fn fill(row: &mut [u64], first: usize, last: usize) {
+    let (left, right) = (first / 64, last / 64);
+    let (low, high) = (u64::MAX << (first % 64), u64::MAX >> (63 - last % 64));
+    if left >= right {
+        row[left] |= low & high;
+    } else {
+        row[left] |= low;
+        row[right] |= high;
+        row[left + 1..right].fill(u64::MAX);
+    }
 }
 
 /// A row with every covered pixel spread `reach` to both sides.
@@ -208,7 +228,14 @@ mod tests {
         assert_eq!(picture.centroid(), Some([95.0, 3.5]));
         assert_eq!(Silhouette::new(9).centroid(), None);
         assert!(picture.covers(3..4, 60, 130) && !picture.covers(3..4, 59, 70) && !picture.covers(2..4, 60, 61));
-        assert_eq!(bit_positions(1 << 63 | 1 << 5 | 1), 68);
+        let mut runs = Vec::new();
+        picture.fill(3, 2, 3);
+        picture.each_run(|y, first, end| runs.push([y, first, end]));
+        assert_eq!(runs, [[3, 2, 3], [3, 60, 130]]);
+        let mut full = Silhouette::new(64);
+        full.fill(63, 0, 64);
+        full.each_run(|y, first, end| runs.push([y, first, end]));
+        assert_eq!(runs[2..], [[63, 0, 64]]);
     }
 
     #[test]

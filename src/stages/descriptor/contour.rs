@@ -60,34 +60,13 @@ impl Contour {
 pub fn boundaries(picture: &Silhouette) -> Vec<Vec<[isize; 2]>> {
     let mut seen = Silhouette::new(picture.side());
     let mut paths = Vec::new();
-    for y in 0..picture.side() {
-        for x in left_edges(picture.row(y)) {
-            let [x, y] = [x as isize, y as isize];
-            if !seen.get(x, y) {
-                paths.push(trace(picture, [x, y], &mut seen));
-            }
+    picture.each_run(|y, first, _| {
+        let left = [first, y].map(|c| c as isize);
+        if !seen.get(left[0], left[1]) {
+            paths.push(trace(picture, left, &mut seen));
         }
-    }
-    paths
-}
-
-/// The covered pixels of a row whose left neighbour is not covered.
-fn left_edges(row: &[u64]) -> impl Iterator<Item = usize> {
-    let starts = row.iter().scan(0, |carry, &word| {
-        let starts = word & !(word << 1 | *carry);
-        *carry = word >> 63;
-        Some(starts)
     });
-    starts.enumerate().flat_map(|(number, word)| bits(word).map(move |bit| 64 * number + bit))
-}
-
-/// The positions of a word's ones.
-fn bits(mut word: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let position = word.trailing_zeros() as usize;
-        word &= word.wrapping_sub(1);
-        (position < 64).then_some(position)
-    })
+    paths
 }
 
 /// Follows the boundary that holds the left edge of a covered pixel, the covered side on the left, and marks all left
@@ -133,8 +112,13 @@ fn ahead([x, y]: [isize; 2], heading: usize) -> ([isize; 2], [isize; 2]) {
 }
 
 fn doubled_area(path: &[[isize; 2]]) -> i64 {
-    let next = path.iter().cycle().skip(1);
-    path.iter().zip(next).map(|(p, q)| (p[0] * q[1] - p[1] * q[0]) as i64).sum()
+    let Some(mut previous) = path.last() else { return 0 };
+    let mut doubled = 0;
+    for p in path {
+        doubled += (previous[0] * p[1] - previous[1] * p[0]) as i64;
+        previous = p;
+    }
+    doubled
 }
 
 #[cfg(test)]

@@ -92,17 +92,17 @@ pub fn magnitudes(coefficients: &[[f32; 2]; HARMONICS]) -> [f32; HARMONICS] {
 /// Where the half axis meets the polygon farthest from `centre`.
 fn last_crossing(points: &[[f64; 2]], centre: [f64; 2], start: Start) -> Option<Place> {
     let mut best: Option<(f64, Place)> = None;
-    let ends = points.iter().cycle().skip(1);
-    for (side, (a, b)) in points.iter().zip(ends).enumerate() {
-        let (a, b) = (seen(*a, centre, start), seen(*b, centre, start));
-        if (a[1] < 0.0) == (b[1] < 0.0) {
-            continue;
+    let mut corners = points.iter().chain(points.first()).map(|p| seen(*p, centre, start));
+    let mut a = corners.next()?;
+    for (side, b) in corners.enumerate() {
+        if (a[1] < 0.0) != (b[1] < 0.0) {
+            let share = a[1] / (a[1] - b[1]);
+            let x = a[0] + share * (b[0] - a[0]);
+            if x >= 0.0 && best.is_none_or(|(farthest, _)| x > farthest) {
+                best = Some((x, Place { side, share }));
+            }
         }
-        let share = a[1] / (a[1] - b[1]);
-        let x = a[0] + share * (b[0] - a[0]);
-        if x >= 0.0 && best.is_none_or(|(farthest, _)| x > farthest) {
-            best = Some((x, Place { side, share }));
-        }
+        a = b;
     }
     best.map(|(_, place)| place)
 }

@@ -161,9 +161,10 @@ fn describe(picture: &Silhouette, options: &Options) -> Option<ViewDescriptor> {
 
 /// The outer contour that encloses nearly the whole silhouette, if need be after closing gaps.
 fn unbroken_contour(picture: &Silhouette, options: &Options) -> Option<Contour> {
-    let wanted = options.enclosed * picture.area() as f64;
     // A lone outer contour encloses all.
-    let encloses = |(contour, alone): &(Contour, bool)| *alone || contour.enclosed(picture) as f64 >= wanted;
+    let encloses = |(contour, alone): &(Contour, bool)| {
+        *alone || contour.enclosed(picture) as f64 >= options.enclosed * picture.area() as f64
+    };
     Contour::largest(picture)
         .filter(encloses)
         .or_else(|| Contour::largest(&picture.closed(options.closing_radius())).filter(encloses))
