@@ -2,6 +2,7 @@
 
 use crate::brep::Mesh;
 use crate::brep::measure::Measures;
+use crate::geometry::order::{less, more};
 use crate::geometry::{Frame, Point, Vector};
 
 /// A parallel projection onto a square picture.
@@ -74,7 +75,7 @@ impl Camera {
 /// From the centroid to the lowest and the highest point along an axis.
 pub(super) fn extent(mesh: &Mesh, measures: &Measures, axis: &Vector) -> (f64, f64) {
     let heights = mesh.points.iter().map(|p| axis.dot(&(p - measures.centroid)));
-    heights.fold((0.0, 0.0), |(low, high), h| (f64::min(low, h), f64::max(high, h)))
+    heights.fold((0.0, 0.0), |(low, high), h| (less(low, h), more(high, h)))
 }
 
 /// 1 where the model reaches farther from its centroid along the axis than against it, else -1.

@@ -3,9 +3,10 @@
 use tiny_skia::{Color, Pixmap, PremultipliedColorU8};
 
 use crate::geometry::Point;
+use crate::geometry::order::more;
 
 use super::Camera;
-use super::triangle::{Ramp, Triangle};
+use super::triangle::{Ramp, Samples, Triangle, cell};
 
 /// Red, green, blue.
 pub type Rgb = [u8; 3];
@@ -24,6 +25,8 @@ pub enum Paint {
 pub struct Corner {
     /// Where it lies in the picture, as the camera projects it.
     pub at: [f64; 3],
+    /// The samples whose centres it lies before: columns, rows.
+    pub cell: [u32; 2],
     /// Its light, 0 to 1.
     pub light: f64,
     /// Its signed distance from the scene's plane.
@@ -51,13 +54,25 @@ struct Surface {
 }
 
 impl Surface {
-    fn colour(&self, x: usize, y: usize) -> Rgb {
-        let colour = match self.paint {
-            Paint::Split(_, negative) if self.across.at(x, y) < 0.0 => negative,
-            Paint::Plain(colour) | Paint::Split(colour, _) => colour,
+    /// Gives samples of a row, from the first on, the colours of the surface there.
+    fn colour(&self, row: &mut [Rgb], first: usize, y: usize) {
+        let (light, across) = (self.light.row(y), self.across.row(y));
+        let lit = |colour: [f64; 3], x| {
+            let light = light.at(x).clamp(0.0, 1.0);
+            colour.map(|c| (c * light) as u8)
         };
-        let light = self.light.at(x, y).clamp(0.0, 1.0);
-        colour.map(|c| (f64::from(c) * light) as u8)
+        let samples = (first..).zip(row);
+        match self.paint {
+            Paint::Plain(colour) => {
+                let colour = colour.map(f64::from);
+                samples.for_each(|(x, sample)| *sample = lit(colour, x));
+            }
+            Paint::Split(positive, negative) => {
+                let [positive, negative] = [positive, negative].map(|colour| colour.map(f64::from));
+                let colour = |x| if across.at(x) < 0.0 { negative } else { positive };
+                samples.for_each(|(x, sample)| *sample = lit(colour(x), x));
+            }
+        }
     }
 }
 
@@ -84,46 +99,74 @@ impl Canvas {
 
     /// Places a triangle where nothing nearer is placed yet.
     pub fn triangle(&mut self, corners: [&Corner; 3], paint: Paint, face: u32) {
-        let flat = corners.map(|c| [c.at[0], c.at[1]]);
+        let (flat, cells) = (corners.map(|c| [c.at[0], c.at[1]]), corners.map(|c| c.cell));
         let width = self.side * self.samples;
-        let Some(triangle) = Triangle::new(flat, width) else { return };
+        let Some(samples) = Samples::of(&cells).filter(|samples| !self.hides(samples, &corners)) else { return };
+        let Some(triangle) = Triangle::new(flat, &samples, width) else { return };
         let ramp = |value: fn(&Corner) -> f64| Ramp::new(&flat, corners.map(value));
         let depths = ramp(|c| c.at[2]);
         let surface = self.surfaces.len() as u32;
         let mut shows = false;
-        for (y, span) in triangle.spans() {
-            let row = y * width + span.start..y * width + span.end.max(span.start);
+        triangle.each_span(|y, span| {
+            let (depths, row) = (depths.row(y), y * width + span.start..y * width + span.end);
             for ((x, nearest), seen) in span.zip(&mut self.depths[row.clone()]).zip(&mut self.seen[row]) {
-                let depth = depths.at(x, y) as f32;
+                let depth = depths.at(x) as f32;
                 if depth > *nearest {
                     (*nearest, *seen, shows) = (depth, surface, true);
                 }
             }
-        }
+        });
         if shows {
             self.surfaces.push(Surface { face, paint, light: ramp(|c| c.light), across: ramp(|c| c.across) });
         }
     }
 
+    /// Whether a triangle lies behind what is placed in all of its box of samples: the triangles that come late do.
+    fn hides(&self, samples: &Samples, corners: &[&Corner; 3]) -> bool {
+        let [a, b, c] = corners.map(|corner| corner.at[2]);
+        let (nearest, width) = (more(more(a, b), c) as f32, self.side * self.samples);
+        let mut rows = samples.rows.clone();
+        rows.all(|y| {
+            let row = &self.depths[y * width..(y + 1) * width];
+            row[samples.columns.clone()].iter().all(|depth| *depth >= nearest)
+        })
+    }
+
     /// Gives the samples their colours: those of the surfaces that are seen, darker where one face borders on another
     /// or on the background.
     pub fn shade(&mut self) {
-        let width = self.side * self.samples;
+        let width = (self.side * self.samples).max(1);
         let mut colours = vec![WHITE; self.seen.len()];
-        for (y, row) in colours.chunks_exact_mut(width.max(1)).enumerate() {
-            let seen = &self.seen[y * width..];
+        for (y, row) in colours.chunks_exact_mut(width).enumerate() {
+            let seen = &self.seen[y * width..(y + 1) * width];
             let below = &self.seen[(y + 1).min(width - 1) * width..];
-            for (x, colour) in row.iter_mut().enumerate() {
-                let (own, right) = (seen[x], seen[(x + 1).min(width - 1)]);
+            let mut first = 0;
+            for run in seen.chunk_by(|a, b| a == b) {
+                let (own, end) = (run[0], first + run.len());
+                let row = &mut row[first..end];
                 if let Some(surface) = self.surfaces.get(own as usize) {
-                    *colour = surface.colour(x, y);
+                    surface.colour(row, first, y);
                 }
-                if self.borders(own, right) || self.borders(own, below[x]) {
-                    *colour = blend(*colour, [0; 3], OUTLINE);
-                }
+                self.outline(row, own, &below[first..end], seen.get(end));
+                first = end;
             }
         }
         self.colours = colours;
+    }
+
+    /// Darkens those samples of one surface that border on another face below, and the last one also to the right.
+    fn outline(&self, row: &mut [Rgb], own: u32, below: &[u32], right: Option<&u32>) {
+        for (colour, below) in row.iter_mut().zip(below) {
+            if self.borders(own, *below) {
+                *colour = blend(*colour, [0; 3], OUTLINE);
+            }
+        }
+        if let (Some(colour), Some(below), Some(right)) = (row.last_mut(), below.last(), right)
+            && self.borders(own, *right)
+            && !self.borders(own, *below)
+        {
+            *colour = blend(*colour, [0; 3], OUTLINE);
+        }
     }
 
     /// Whether surfaces belong to different faces.
@@ -167,13 +210,27 @@ impl Canvas {
         [x, y].map(|c| (c / self.samples as f64) as f32)
     }
 
-    /// The colours of the pixels, row by row from the top.
-    pub fn pixels(&self) -> impl Iterator<Item = Rgb> {
-        let rows = self.colours.chunks_exact((self.side * self.samples * self.samples).max(1));
-        rows.flat_map(|row| self.means(row))
+    /// The colours of the pixels, row by row from the top: the means of their samples.
+    pub fn pixels(&self) -> Vec<Rgb> {
+        let (n, width) = (self.samples, self.side * self.samples);
+        // Exact for sums of up to 64 by 64 bytes.
+        let share = (1 << 32) / (n * n).max(1) as u64 + 1;
+        let mean = |sum: u32| ((u64::from(sum) * share) >> 32) as u8;
+        let mut pixels = Vec::with_capacity(self.side * self.side);
+        let mut sums = vec![[0; 3]; width];
+        for rows in self.colours.chunks_exact((width * n).max(1)) {
+            sums.fill([0; 3]);
+            for row in rows.chunks_exact(width) {
+                let colours = row.as_flattened().iter();
+                sums.as_flattened_mut().iter_mut().zip(colours).for_each(|(sum, c)| *sum += u32::from(*c));
+            }
+            let add = |sum: [u32; 3], sample: &[u32; 3]| [0, 1, 2].map(|c| sum[c] + sample[c]);
+            pixels.extend(sums.chunks_exact(n).map(|pixel| pixel.iter().fold([0; 3], add).map(mean)));
+        }
+        pixels
     }
 
-    /// The picture: the mean of the samples of each pixel.
+    /// The picture of the pixels.
     pub fn resolved(&self) -> Pixmap {
         let side = self.side.clamp(1, 16_384);
         let mut picture = Pixmap::new(side as u32, side as u32).expect("a side between 1 and 16384 is a valid size");
@@ -184,28 +241,17 @@ impl Canvas {
         picture
     }
 
-    /// The mean of the samples of each pixel of a row.
-    fn means(&self, row: &[Rgb]) -> Vec<Rgb> {
-        let n = self.samples;
-        let mut sums = vec![[0u32; 3]; self.side];
-        for samples in row.chunks_exact(self.side * n) {
-            for (sum, pixel) in sums.iter_mut().zip(samples.chunks_exact(n)) {
-                pixel.iter().for_each(|colour| (0..3).for_each(|c| sum[c] += u32::from(colour[c])));
-            }
-        }
-        let count = (n * n) as u32;
-        sums.into_iter().map(|sum| sum.map(|s| (s / count) as u8)).collect()
-    }
-
     /// Calls `draw` for each sample inside a triangle with the depth there.
     fn samples_of(&mut self, corners: [[f64; 3]; 3], mut draw: impl FnMut(&mut Self, usize, f32)) {
         let flat = corners.map(|[x, y, _]| [x, y]);
         let width = self.side * self.samples;
-        let Some(triangle) = Triangle::new(flat, width) else { return };
+        let Some(samples) = Samples::of(&flat.map(|corner| cell(corner, width))) else { return };
+        let Some(triangle) = Triangle::new(flat, &samples, width) else { return };
         let depths = Ramp::new(&flat, corners.map(|c| c[2]));
-        for (y, span) in triangle.spans() {
-            span.for_each(|x| draw(self, y * width + x, depths.at(x, y) as f32));
-        }
+        triangle.each_span(|y, span| {
+            let depths = depths.row(y);
+            span.for_each(|x| draw(self, y * width + x, depths.at(x) as f32));
+        });
     }
 }
 

@@ -21,6 +21,7 @@ pub use camera::Camera;
 use canvas::Corner;
 pub use canvas::{Canvas, Paint, Rgb};
 pub use plot::area_curve;
+use triangle::cell;
 
 /// Pixels on a side of a thumbnail.
 pub const THUMBNAIL: usize = 96;
@@ -58,7 +59,7 @@ pub struct Scene<'a> {
 pub fn shaded(scene: &Scene, paint: &dyn Fn(PlacedFaceId) -> Paint, side: usize, samples: usize) -> Canvas {
     let camera = Camera::from_corner(scene.mesh, scene.measures, scene.frame, side * samples).including(scene.also);
     let mut canvas = Canvas::new(camera, side, samples);
-    let corners = corners(scene, &camera);
+    let corners = corners(scene, &camera, side * samples);
     let of_face = |id| scene.mesh.triangles[scene.mesh.triangles_of(id)].iter().map(move |triangle| (id, triangle));
     let triangles = nearest_first(scene.mesh, &corners).flat_map(of_face);
     for (id, triangle) in triangles.take_while(|_| !scene.cancel.is_cancelled()) {
@@ -87,7 +88,7 @@ pub fn thumbnail(mesh: &Mesh, measures: &Measures, frame: &Frame, cancel: &Cance
     let scene = Scene { mesh, measures, frame, plane: None, also: &[], cancel };
     let canvas = shaded(&scene, &|_| Paint::Plain(GREY), THUMBNAIL, THUMBNAIL_SAMPLES);
     cancel.check()?;
-    Ok(canvas.pixels().map(luminance).collect())
+    Ok(canvas.pixels().into_iter().map(luminance).collect())
 }
 
 /// The PNG file of a picture.
@@ -101,7 +102,7 @@ fn luminance([r, g, b]: Rgb) -> u8 {
 
 /// The points of the mesh as the camera sees them. Their light follows Lambert's law on both sides, with normals averaged
 /// over the triangles that meet there (points belong to one face, so that edges stay sharp).
-fn corners(scene: &Scene, camera: &Camera) -> Vec<Corner> {
+fn corners(scene: &Scene, camera: &Camera, width: usize) -> Vec<Corner> {
     let mut normals = vec![Vector::zeros(); scene.mesh.points.len()];
     for (t, corners) in scene.mesh.triangles.iter().enumerate() {
         let normal = scene.mesh.doubled_normal(t);
@@ -113,7 +114,10 @@ fn corners(scene: &Scene, camera: &Camera) -> Vec<Corner> {
         if length > 0.0 { AMBIENT + (1.0 - AMBIENT) * lamp.dot(normal).abs() / length } else { AMBIENT }
     };
     let across = |p: &Point| scene.plane.map_or(0.0, |plane| plane.signed_distance(p));
-    let corner = |(p, normal)| Corner { at: camera.project(p), light: light(normal), across: across(p) };
+    let corner = |(p, normal)| {
+        let at = camera.project(p);
+        Corner { at, cell: cell([at[0], at[1]], width), light: light(normal), across: across(p) }
+    };
     scene.mesh.points.iter().zip(&normals).map(corner).collect()
 }
 
