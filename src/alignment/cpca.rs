@@ -16,17 +16,19 @@ pub fn axes(mesh: &Mesh) -> [Vector; 3] {
 /// Covariance of the surface's points about its area centroid, mm^2; zero for a mesh without area.
 pub fn covariance(mesh: &Mesh) -> Matrix {
     let (mut total, mut moment) = (0.0, Vector::zeros());
-    for (corners, _, area) in triangles(mesh) {
+    let mut parts = Vec::with_capacity(mesh.triangles.len());
+    parts.extend(triangles(mesh).map(|(corners, _, area)| (corners, centroid(&corners), area)));
+    for (_, centroid, area) in &parts {
         total += area;
-        moment += centroid(&corners).coords * area;
+        moment += centroid.coords * *area;
     }
     if total <= 0.0 {
         return Matrix::zeros();
     }
     let m = Point::from(moment / total);
     let mut sum = [0.0; 6];
-    for (corners, _, area) in triangles(mesh) {
-        let [a, b, c, g] = [corners[0], corners[1], corners[2], centroid(&corners)].map(|p| products(&(p - m)));
+    for ([a, b, c], centroid, area) in &parts {
+        let [a, b, c, g] = [a, b, c, centroid].map(|p| products(&(p - m)));
         for i in 0..6 {
             sum[i] += area * (a[i] + b[i] + c[i] + 9.0 * g[i]);
         }

@@ -6,6 +6,8 @@
 //! Points on an edge are stored once for each adjoining face and count once here. How densely curved faces are
 //! tessellated sways the result; that is this baseline's known weakness, not ours to mend.
 
+use rustc_hash::FxHashSet;
+
 use crate::brep::Mesh;
 use crate::geometry::{Matrix, Point, Vector, isometry::mean};
 
@@ -19,9 +21,12 @@ pub fn axes(mesh: &Mesh) -> [Vector; 3] {
     principal_axes(&covariance)
 }
 
-/// The points without bitwise repetitions, sorted.
+/// The points without repetitions, sorted.
 fn distinct(points: &[Point]) -> Vec<Point> {
-    let mut points = points.to_vec();
+    // Two of three are repetitions: sorting costs more than to leave them out first.
+    let mut seen = FxHashSet::with_capacity_and_hasher(points.len() / 2, Default::default());
+    let is_new = |p: &&Point| seen.insert((p.x.to_bits(), p.y.to_bits(), p.z.to_bits()));
+    let mut points: Vec<_> = points.iter().filter(is_new).copied().collect();
     points.sort_unstable_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(a.z.total_cmp(&b.z)));
     points.dedup();
     points

@@ -34,14 +34,14 @@ pub fn winding_number(polygon: &[Point2], p: &Point2) -> i32 {
 /// The convex hull of `points`, counter-clockwise without collinear points.
 pub fn convex_hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let mut hull = Vec::new();
-    push_hull(&mut points, &mut hull);
+    push_hull(&mut points, &mut hull, &mut Vec::new());
     hull
 }
 
 /// Appends the convex hull of `points`, counter-clockwise without collinear points (Andrew's monotone chain). The points
-/// are left sorted.
-pub fn push_hull(points: &mut [[f64; 2]], hull: &mut Vec<[f64; 2]>) {
-    sort(points);
+/// are left sorted; `keys` is room to sort them.
+pub fn push_hull(points: &mut [[f64; 2]], hull: &mut Vec<[f64; 2]>, keys: &mut Vec<u128>) {
+    sort(points, keys);
     let mut distinct = 1;
     for i in 1..points.len() {
         if points[i] != points[distinct - 1] {
@@ -63,11 +63,12 @@ pub fn push_hull(points: &mut [[f64; 2]], hull: &mut Vec<[f64; 2]>) {
 }
 
 /// Sorts points by their first coordinate, then by the second, as whole numbers that are compared at once.
-fn sort(points: &mut [[f64; 2]]) {
-    let mut keys: Vec<_> = points.iter().map(|&[x, y]| u128::from(key(x)) << 64 | u128::from(key(y))).collect();
+fn sort(points: &mut [[f64; 2]], keys: &mut Vec<u128>) {
+    keys.clear();
+    keys.extend(points.iter().map(|&[x, y]| u128::from(key(x)) << 64 | u128::from(key(y))));
     keys.sort_unstable();
     let coordinates = |key: u128| [key >> 64, key].map(|bits| coordinate(bits as u64));
-    points.iter_mut().zip(keys).for_each(|(point, key)| *point = coordinates(key));
+    points.iter_mut().zip(keys).for_each(|(point, key)| *point = coordinates(*key));
 }
 
 /// Bits that compare like the number.
@@ -83,7 +84,9 @@ fn coordinate(key: u64) -> f64 {
 
 fn push_chain<'a>(points: impl Iterator<Item = &'a [f64; 2]>, base: usize, hull: &mut Vec<[f64; 2]>) {
     for &p in points {
-        while hull.len() >= base + 2 && turns_right(hull[hull.len() - 2], hull[hull.len() - 1], p) {
+        while let [.., a, b] = hull[base..]
+            && turns_right(a, b, p)
+        {
             hull.pop();
         }
         hull.push(p);
@@ -137,7 +140,7 @@ mod tests {
     fn points_are_sorted_by_both_coordinates() {
         let sorted = [[f64::NEG_INFINITY, 1.0], [-3.5, -2.0], [-3.5, 1e-300], [0.0, -0.0], [0.0, 0.0], [2.0, -1.0]];
         let mut points = [3, 5, 0, 2, 4, 1].map(|i| sorted[i]);
-        sort(&mut points);
+        sort(&mut points, &mut Vec::new());
         assert_eq!(points.map(|p| p.map(f64::to_bits)), sorted.map(|p| p.map(f64::to_bits)));
     }
 

@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use super::slices::Flat;
 
-/// The hulls that do not lie inside the largest one, itself among them, in their order.
-pub(super) fn uncovered(points: &[Flat], hulls: &[Range<usize>]) -> Vec<Range<usize>> {
+/// Drops the hulls that lie inside the largest one: a plate with ten thousand holes casts the shadow of a plate.
+pub(super) fn drop_covered(points: &[Flat], hulls: &mut Vec<Range<usize>>) {
     if hulls.len() < 2 {
-        return hulls.to_vec();
+        return;
     }
-    let area = |hull: &Range<usize>| doubled_area(&points[hull.clone()]);
-    let largest = hulls.iter().map(|hull| (area(hull), hull)).max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((_, largest)) = largest.filter(|(area, _)| *area > 0.0) else { return hulls.to_vec() };
+    let areas = hulls.iter().map(|hull| (doubled_area(&points[hull.clone()]), hull));
+    let largest = areas.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(area, _)| *area > 0.0);
+    let Some(largest) = largest.map(|(_, hull)| hull.clone()) else { return };
     let cover = Cover::of(&points[largest.clone()]);
-    hulls.iter().filter(|h| *h == largest || !cover.holds(&points[(*h).clone()])).cloned().collect()
+    hulls.retain(|hull| *hull == largest || !cover.holds(&points[hull.clone()]));
 }
 
 /// A convex polygon that is asked what lies inside it.
@@ -31,7 +31,8 @@ impl<'a> Cover<'a> {
         let share = 1.0 / hull.len().max(1) as f64;
         let centre = [0, 1].map(|i| hull.iter().map(|p| p[i]).sum::<f64>() * share);
         let mut cover = Self { hull, centre, within: 0.0 };
-        let heights = cover.sides().map(|[a, b]| beside(a, b, centre) / (b[0] - a[0]).hypot(b[1] - a[1]));
+        let heights =
+            cover.sides().map(|[a, b]| beside(a, b, centre) / ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt());
         let nearest = heights.fold(f64::INFINITY, f64::min).max(0.0);
         // What rounding may add to a distance stays outside.
         cover.within = (nearest * (1.0 - 1e-9)).powi(2);
@@ -47,7 +48,7 @@ impl<'a> Cover<'a> {
     }
 
     fn sides(&self) -> impl Iterator<Item = [Flat; 2]> + '_ {
-        self.hull.iter().zip(self.hull.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
+        sides(self.hull)
     }
 }
 
@@ -58,8 +59,12 @@ fn beside(a: Flat, b: Flat, p: Flat) -> f64 {
 
 /// Twice the area of a counter-clockwise polygon, mm^2.
 fn doubled_area(hull: &[Flat]) -> f64 {
-    let ends = hull.iter().cycle().skip(1);
-    hull.iter().zip(ends).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
+    sides(hull).map(|[a, b]| a[0] * b[1] - a[1] * b[0]).sum()
+}
+
+/// The sides of a polygon, from corner to corner.
+pub(super) fn sides(polygon: &[Flat]) -> impl Iterator<Item = [Flat; 2]> + '_ {
+    polygon.iter().zip(polygon.iter().skip(1).chain(polygon.first())).map(|(a, b)| [*a, *b])
 }
 
 #[cfg(test)]
@@ -71,8 +76,9 @@ mod tests {
         // A square of side 4, a triangle inside it, one beside it.
         let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [1.0, 1.0], [2.0, 1.0], [1.0, 2.0], [5.0, 0.0]];
         let points: Vec<Flat> = points.into_iter().chain([[6.0, 0.0], [5.0, 1.0]]).collect();
-        assert_eq!(uncovered(&points, &[4..7, 0..4, 7..10]), [0..4, 7..10]);
-        assert!(uncovered(&points, &[]).is_empty());
+        let mut hulls = vec![4..7, 0..4, 7..10];
+        drop_covered(&points, &mut hulls);
+        assert_eq!(hulls, [0..4, 7..10]);
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! The axis that the planes turn about, and where the turning starts.
 
-use crate::alignment::cpca;
+use crate::alignment::principal_axes;
 use crate::alignment::rectilinearity::rectilinearity;
 use crate::brep::Mesh;
 use crate::brep::measure::Measures;
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Point, Vector, any_perpendicular};
+use crate::geometry::{Matrix, Point, Vector, any_perpendicular};
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 
@@ -19,10 +19,12 @@ pub(super) struct Reference {
     pub source: Source,
 }
 
-/// The normal of the dominant symmetry, else the axis of the fallback frame with the smallest shadow.
+/// The normal of the dominant symmetry, else the axis of the fallback frame with the smallest shadow. `covariance`: of
+/// the surface's points.
 pub(super) fn find(
     parsed: &Parsed,
     symmetries: &Symmetries,
+    covariance: &Matrix,
     options: &Options,
     cancel: &Cancel,
 ) -> Result<Reference, Cancelled> {
@@ -36,18 +38,24 @@ pub(super) fn find(
     let (axes, source) = if rectilinear.measure >= options.min_rectilinearity {
         (rectilinear.axes, Source::Rectilinearity)
     } else {
-        (cpca::axes(&parsed.mesh), Source::Cpca)
+        (principal_axes(covariance), Source::Cpca)
     };
-    let axis = match lone_axis(&parsed.mesh, &axes).filter(|_| source == Source::Cpca) {
-        Some(lone) => lone_or_across(parsed, &lone, options, cancel)?,
+    let axis = match lone_axis(covariance, &axes).filter(|_| source == Source::Cpca) {
+        Some(lone) => lone_or_across(parsed, covariance, &lone, options, cancel)?,
         None => axes[smallest_shadow(parsed, &axes, options, cancel)?],
     };
     Ok(Reference { axis, origin: centroid, source })
 }
 
 /// Of an axis and all directions across it the one with the smallest shadow.
-fn lone_or_across(parsed: &Parsed, lone: &Vector, options: &Options, cancel: &Cancel) -> Result<Vector, Cancelled> {
-    let table = Turntable::on_model(&parsed.mesh, &parsed.measures, lone);
+fn lone_or_across(
+    parsed: &Parsed,
+    covariance: &Matrix,
+    lone: &Vector,
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Vector, Cancelled> {
+    let table = Turntable::on_model(&parsed.mesh, &parsed.measures, covariance, lone);
     // By the same measure as the shadow along the axis, whatever turns the second axis.
     let options = &Options { area_by: AreaBy::Spans, second_axis: SecondAxis::Sweep, ..options.clone() };
     let across = turn(parsed, &table, options, cancel)?.choice;
@@ -57,8 +65,7 @@ fn lone_or_across(parsed: &Parsed, lone: &Vector, options: &Options, cancel: &Ca
 
 /// The principal axis along which the variance is another than along the two others, where it is the same along these,
 /// as about the axis of a propeller: which axes across it are the principal ones is up to rounding.
-fn lone_axis(mesh: &Mesh, axes: &[Vector; 3]) -> Option<Vector> {
-    let covariance = cpca::covariance(mesh);
+fn lone_axis(covariance: &Matrix, axes: &[Vector; 3]) -> Option<Vector> {
     let [a, b, c] = axes.map(|axis| axis.dot(&(covariance * axis)));
     let equal = |p: f64, q: f64| (p - q).abs() <= ISOTROPIC * a.abs();
     match (equal(a, b), equal(b, c)) {
@@ -123,9 +130,9 @@ impl Turntable {
     }
 
     /// Starts with `u` at the largest variance of the surface across the axis, so that it moves with the model.
-    pub(super) fn on_model(mesh: &Mesh, measures: &Measures, axis: &Vector) -> Self {
+    pub(super) fn on_model(mesh: &Mesh, measures: &Measures, covariance: &Matrix, axis: &Vector) -> Self {
         let any = Self::arbitrary(measures, axis);
-        let u = towards(&any.u, &any.v, any.main_angle(mesh)).normalize();
+        let u = towards(&any.u, &any.v, any.main_angle(mesh, covariance)).normalize();
         Self { u, v: axis.cross(&u), ..any }
     }
 
@@ -135,14 +142,13 @@ impl Turntable {
     }
 
     /// Sets the angle of the largest variance as seen from the present start.
-    pub(super) fn with_largest_variance(self, mesh: &Mesh) -> Self {
-        Self { largest_variance: self.main_angle(mesh), ..self }
+    pub(super) fn with_largest_variance(self, mesh: &Mesh, covariance: &Matrix) -> Self {
+        Self { largest_variance: self.main_angle(mesh, covariance), ..self }
     }
 
     /// The angle of the largest variance of the surface; where it is the same all around, that of the point farthest
     /// from the axis.
-    fn main_angle(&self, mesh: &Mesh) -> f64 {
-        let covariance = cpca::covariance(mesh);
+    fn main_angle(&self, mesh: &Mesh, covariance: &Matrix) -> f64 {
         let (cu, cv) = (covariance * self.u, covariance * self.v);
         let (difference, mixed) = (self.u.dot(&cu) - self.v.dot(&cv), 2.0 * self.u.dot(&cv));
         if difference.hypot(mixed) > ISOTROPIC * (self.u.dot(&cu) + self.v.dot(&cv)) {

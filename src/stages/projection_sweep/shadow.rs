@@ -7,7 +7,7 @@ use std::ops::Range;
 use crate::brep::{Mesh, MeshFace};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::cells::first_centre;
-use crate::geometry::order::{less, more};
+use crate::geometry::order::{ascending, less, more};
 use crate::geometry::{Point, Vector};
 
 /// Area of the mesh's shadow on the plane of `across` and `along` (at right angles, unit vectors), mm^2: the mesh is cut
@@ -63,6 +63,7 @@ struct Cut {
 }
 
 /// How far something reaches along the shadows, and the slices that it may cross.
+#[derive(Clone)]
 struct Extent {
     x: [f64; 2],
     slices: Range<usize>,
@@ -84,11 +85,12 @@ impl Extent {
 
 impl Cut {
     /// The faces, those first that cast the widest shadows: most of what the others cast lies within these.
-    fn widest_first<'a>(&self, mesh: &'a Mesh) -> Vec<(Extent, &'a MeshFace)> {
+    fn widest_first<'a>(&self, mesh: &'a Mesh) -> impl Iterator<Item = (Extent, &'a MeshFace)> + use<'a> {
         let corners = |face: &MeshFace| &self.corners[face.points.start as usize..face.points.end as usize];
-        let mut faces: Vec<_> = mesh.faces.iter().map(|face| (Extent::of(corners(face)), face)).collect();
-        faces.sort_by(|a, b| b.0.width().total_cmp(&a.0.width()));
-        faces
+        let extents: Vec<_> = mesh.faces.iter().map(|face| Extent::of(corners(face))).collect();
+        let mut order: Vec<_> = extents.iter().map(Extent::width).zip(0..).collect();
+        order.sort_unstable_by(|a: &(f64, usize), b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        order.into_iter().map(move |(_, number)| (extents[number].clone(), &mesh.faces[number]))
     }
 
     /// Whether the shadows hold already what lies within an extent.
@@ -102,7 +104,7 @@ impl Cut {
         if corners[1].level == corners[0].level && corners[2].level == corners[0].level {
             return;
         }
-        let [a, b, c] = upward(corners);
+        let [a, b, c] = ascending(corners, |corner| corner.height);
         let (left, right) = (less(less(a.x, b.x), c.x), more(more(a.x, b.x), c.x));
         let (long, below, above) = (Side::up(&a, &c), Side::up(&a, &b), Side::up(&b, &c));
         for (slice, shadow) in (a.level..c.level).zip(&mut self.shadows[a.level as usize..c.level as usize]) {
@@ -115,12 +117,6 @@ impl Cut {
             shadow.add(less(p, q), more(p, q));
         }
     }
-}
-
-/// The corners of a triangle, lowest first.
-fn upward(mut corners: [Corner; 3]) -> [Corner; 3] {
-    corners.sort_unstable_by(|a, b| a.height.total_cmp(&b.height));
-    corners
 }
 
 /// A side of a triangle.
@@ -168,8 +164,13 @@ impl Union {
     }
 
     fn add(&mut self, low: f64, high: f64) {
-        if self.main[0] > self.main[1] || (low <= self.main[1] && high >= self.main[0]) {
-            self.main = [less(self.main[0], low), more(self.main[1], high)];
+        let touches = |part: &[f64; 2]| low <= part[1] && high >= part[0];
+        let grown = |part: &[f64; 2]| [less(part[0], low), more(part[1], high)];
+        if touches(&self.main) || self.main[0] > self.main[1] {
+            self.main = grown(&self.main);
+        } else if let Some(last) = self.others.last_mut().filter(|last| touches(last)) {
+            // What comes next lies mostly beside it.
+            *last = grown(last);
         } else {
             self.others.push([low, high]);
             if self.others.len() > self.most {

@@ -5,9 +5,10 @@
 
 use std::ops::Range;
 
-use super::wire::{Wire, grouped};
+use super::wire::{Wire, group};
 
 /// Slices that cross the same edges.
+#[derive(Default)]
 pub(super) struct Slab {
     pub slices: Range<u32>,
     /// The edges that hulls may have corners on, piece by piece.
@@ -34,6 +35,9 @@ pub(super) struct Slabs<'a> {
     parents: Vec<u32>,
     /// Of those the number of the piece.
     numbers: Vec<u32>,
+    /// The edges that bend, each with the number of its piece.
+    bent: Vec<(u32, u32)>,
+    slab: Slab,
 }
 
 impl<'a> Slabs<'a> {
@@ -46,65 +50,66 @@ impl<'a> Slabs<'a> {
             triangles: Crossed { rising: &wire.rising_triangles, now: Vec::new() },
             parents: none.clone(),
             numbers: none,
+            bent: Vec::new(),
+            slab: Slab::default(),
         }
     }
 
-    /// Connects what the triangles connect in a slice.
-    fn connect(&mut self, slice: u32) {
-        self.edges.now.iter().for_each(|(_, edge)| self.parents[*edge as usize] = *edge);
-        for i in 0..self.triangles.now.len() {
-            let triangle = self.wire.triangle(self.triangles.now[i].1);
-            self.join(triangle.long, triangle.short[usize::from(slice >= triangle.middle)]);
-        }
-    }
-
-    fn root(&mut self, mut edge: u32) -> u32 {
-        while self.parents[edge as usize] != edge {
-            let above = self.parents[self.parents[edge as usize] as usize];
-            self.parents[edge as usize] = above;
-            edge = above;
-        }
-        edge
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
-
-    /// The edges that bend piece by piece, and where each piece ends.
-    fn pieces(&mut self) -> (Vec<u32>, Vec<usize>) {
-        let edges = self.edges.now.iter().map(|(_, edge)| *edge).filter(|edge| self.wire.bends(*edge));
-        let mut edges: Vec<_> = edges.map(|edge| (0, edge)).collect();
-        edges.iter_mut().for_each(|(root, edge)| *root = self.root(*edge));
-        edges.iter().for_each(|(root, _)| self.numbers[*root as usize] = u32::MAX);
-        let mut count = 0;
-        for (root, _) in &mut edges {
-            let number = &mut self.numbers[*root as usize];
-            if *number == u32::MAX {
-                *number = count;
-                count += 1;
-            }
-            *root = *number;
-        }
-        grouped(edges.iter().copied(), count as usize)
-    }
-}
-
-impl Iterator for Slabs<'_> {
-    type Item = Slab;
-
-    fn next(&mut self) -> Option<Slab> {
+    /// The next slab, above the last; `None` at the top.
+    pub fn rise(&mut self) -> Option<&Slab> {
         let start = self.left.start;
         if start >= self.left.end {
             return None;
         }
         self.triangles.rise(start);
-        let end = self.edges.rise(start).min(self.left.end);
-        self.left.start = end;
+        self.edges.rise(start);
+        self.left.start = self.edges.next().min(self.left.end);
+        self.slab.slices = start..self.left.start;
         self.connect(start);
-        let (edges, ends) = self.pieces();
-        Some(Slab { slices: start..end, edges, ends })
+        self.divide();
+        Some(&self.slab)
+    }
+
+    /// Connects what the triangles connect in a slice.
+    fn connect(&mut self, slice: u32) {
+        for &(_, edge) in &self.edges.now {
+            self.parents[edge as usize] = edge;
+            self.numbers[edge as usize] = u32::MAX;
+        }
+        for (_, number) in &self.triangles.now {
+            let triangle = self.wire.triangle(*number);
+            let short = triangle.short[usize::from(slice >= triangle.middle)];
+            let [a, b] = [triangle.long, short].map(|edge| root(&mut self.parents, edge));
+            self.parents[a.max(b) as usize] = a.min(b);
+        }
+    }
+
+    /// Divides the edges that bend into pieces.
+    fn divide(&mut self) {
+        self.bent.clear();
+        let mut count = 0;
+        for edge in self.edges.now.iter().map(|(_, edge)| *edge).filter(|edge| self.wire.bends(*edge)) {
+            let number = &mut self.numbers[root(&mut self.parents, edge) as usize];
+            if *number == u32::MAX {
+                *number = count;
+                count += 1;
+            }
+            self.bent.push((*number, edge));
+        }
+        group(&self.bent, count as usize, &mut self.slab.edges, &mut self.slab.ends);
+    }
+}
+
+/// The one that stands for all that an edge is connected with.
+fn root(parents: &mut [u32], mut edge: u32) -> u32 {
+    loop {
+        let parent = parents[edge as usize];
+        let above = parents[parent as usize];
+        if above == parent {
+            return parent;
+        }
+        parents[edge as usize] = above;
+        edge = above;
     }
 }
 
@@ -116,13 +121,17 @@ struct Crossed<'a> {
 }
 
 impl Crossed<'_> {
-    /// Rises to a slice; returns the next one where something begins or ends.
-    fn rise(&mut self, slice: u32) -> u32 {
+    /// Rises to a slice.
+    fn rise(&mut self, slice: u32) {
         let begun = self.rising.iter().take_while(|(slices, _)| slices.start <= slice).count();
         self.now.retain(|(slices, _)| slices.end > slice);
         // The first slice may lie high up.
         self.now.extend(self.rising[..begun].iter().filter(|(slices, _)| slices.end > slice).cloned());
         self.rising = &self.rising[begun..];
+    }
+
+    /// The next slice where something begins or ends.
+    fn next(&self) -> u32 {
         let begins = self.rising.first().map_or(u32::MAX, |(slices, _)| slices.start);
         self.now.iter().fold(begins, |next, (slices, _)| next.min(slices.end))
     }
@@ -144,12 +153,15 @@ mod tests {
         let (axis, u, v) = (Vector::z(), Vector::x(), Vector::y());
         let table = Turntable { axis, u, v, centre: Point::origin(), largest_variance: 0.0 };
         let wire = Wire::new(&mesh, &table, 0.0, 0.5, 8);
-        let slabs: Vec<_> = Slabs::new(&wire, &(0..8)).collect();
-        assert_eq!(slabs.iter().map(|slab| slab.slices.clone()).collect::<Vec<_>>(), [0..2, 2..8]);
-        let sizes = |slab: &Slab| slab.pieces().map(<[u32]>::len).collect::<Vec<_>>();
-        assert_eq!(slabs.iter().map(sizes).collect::<Vec<_>>(), [vec![4, 4], vec![4]]);
-        assert!(slabs[0].pieces().flatten().all(|&edge| wire.is_upright(edge)));
-        let upper: Vec<_> = Slabs::new(&wire, &(1..5)).map(|slab| slab.slices).collect();
-        assert_eq!(upper, [1..2, 2..5]);
+        let slabs = |slices| {
+            let (mut slabs, mut found) = (Slabs::new(&wire, &slices), Vec::new());
+            while let Some(slab) = slabs.rise() {
+                assert!(slab.pieces().flatten().all(|&edge| wire.is_upright(edge)));
+                found.push((slab.slices.clone(), slab.pieces().map(<[u32]>::len).collect()));
+            }
+            found
+        };
+        assert_eq!(slabs(0..8), [(0..2, vec![4, 4]), (2..8, vec![4])]);
+        assert_eq!(slabs(1..5), [(1..2, vec![4, 4]), (2..5, vec![4])]);
     }
 }

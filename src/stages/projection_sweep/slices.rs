@@ -10,14 +10,15 @@ use rayon::prelude::*;
 
 use crate::brep::Mesh;
 use crate::cancel::{Cancel, Cancelled};
-use crate::geometry::{Vector, polygon};
+use crate::geometry::Vector;
+use crate::geometry::order::{less, more};
 use crate::stages::parse::Parsed;
 
-use super::cover::uncovered;
 use super::curve::Shadows;
+use super::cutter::{Cutter, Hull, Pieces};
 use super::reference::Turntable;
-use super::slabs::{Slab, Slabs};
-use super::widths::Widths;
+use super::slabs::Slabs;
+use super::widths::{Sides, Widths};
 use super::wire::Wire;
 
 /// Edge crossings of the slices that one worker cuts at a time.
@@ -35,24 +36,12 @@ pub struct Slices {
     thickness: f64,
     /// Of the slices that are one piece.
     widths: Widths,
-    /// The slices of several pieces.
-    slices: Vec<Slice>,
+    /// The slices of several pieces, block by block.
+    blocks: Vec<Pieces>,
     /// The largest coordinate in a slice, mm.
     reach: f64,
     /// The angle at which the slices know their extreme points.
     stood: Option<f64>,
-}
-
-/// The pieces of the cut at one height, or at several where it is the same: convex hulls, counter-clockwise, one after
-/// the other.
-#[derive(Clone, Debug, Default)]
-struct Slice {
-    points: Vec<Flat>,
-    hulls: Vec<Range<usize>>,
-    /// How many slices look like this.
-    alike: usize,
-    /// Of each hull, the lowest and the highest point in the direction last stood at.
-    extremes: Vec<[usize; 2]>,
 }
 
 /// Within so many radians of where the slices stood, walking there is cheaper than to look at all points: the angles
@@ -74,22 +63,20 @@ impl Slices {
         Self::cut(&parsed.mesh, &Turntable::about(&parsed.measures, axis, start), count, cancel)
     }
 
-    fn new(thickness: f64, mut slices: Vec<Slice>) -> Self {
-        let convex = slices.iter().filter(|slice| slice.hulls.len() == 1);
-        let widths = Widths::of(convex.map(|slice| (&slice.points[..], slice.alike)));
-        slices.retain(|slice| slice.hulls.len() > 1);
-        let coordinates = slices.iter().flat_map(|slice| slice.points.as_flattened());
-        Self { reach: coordinates.fold(0.0, |most, c| most.max(c.abs())), thickness, widths, slices, stood: None }
+    fn new(thickness: f64, sides: Sides, blocks: Vec<Pieces>) -> Self {
+        let coordinates = blocks.iter().flat_map(|block| block.points.as_flattened());
+        let reach = coordinates.fold(0.0, |most: f64, c| most.max(c.abs()));
+        Self { thickness, widths: Widths::of(sides), blocks, reach, stood: None }
     }
 
     /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
     pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
         let mut count = count.clamp(1, 65_536) as usize;
-        let heights: Vec<f64> = mesh.points.iter().map(|p| table.axis.dot(&(p - table.centre))).collect();
-        let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &z| (l.min(z), h.max(z)));
+        let heights = mesh.points.iter().map(|p| table.axis.dot(&(p - table.centre)));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (less(l, z), more(h, z)));
         let mut thickness = (high - low) / count as f64;
         if !(thickness > 0.0 && thickness.is_finite()) {
-            return Ok(Self::new(0.0, Vec::new()));
+            return Ok(Self::new(0.0, Sides::default(), Vec::new()));
         }
         let mut wire = Wire::new(mesh, table, low, thickness, count);
         let mut crossings = wire.crossings();
@@ -101,12 +88,17 @@ impl Slices {
         }
         let block = (count * CROSSINGS / crossings.max(CROSSINGS)).max(1);
         let blocks: Vec<_> = (0..count).step_by(block).map(|s| s..(s + block).min(count)).collect();
-        let cut = |b: &Range<usize>| cancel.check().map(|()| slices_of(&wire, b));
+        let cut = |b: &Range<usize>| cancel.check().map(|()| cut_block(&wire, b));
         let parts: Vec<_> = match blocks.as_slice() {
             [one] => vec![cut(one)?],
             many => many.par_iter().map(|b| cancel.account().within(|| cut(b))).collect::<Result<_, _>>()?,
         };
-        Ok(Self::new(thickness, parts.into_iter().flatten().collect()))
+        let (mut sides, mut blocks) = (Sides::default(), Vec::new());
+        for part in parts {
+            sides.append(part.sides);
+            blocks.push(part.pieces);
+        }
+        Ok(Self::new(thickness, sides, blocks))
     }
 }
 
@@ -116,55 +108,50 @@ impl Shadows for Slices {
             angles.first().filter(|first| !self.stood.is_some_and(|at| (at..at + NEAR).contains(first)))
         {
             let start = first - 0.5 * NEAR;
-            self.slices.iter_mut().for_each(|slice| slice.stand(across(start)));
+            self.blocks.iter_mut().for_each(|block| stand(block, across(start)));
             self.stood = Some(start);
         }
         let noise = NOISE * self.reach;
         let directions: Vec<Flat> = angles.iter().map(|&a| across(a)).collect();
         let mut areas: Vec<_> = directions.iter().map(|&d| self.thickness * self.widths.along(d)).collect();
         let mut walkers = Vec::new();
-        for slice in &self.slices {
+        for (block, slice) in self.blocks.iter().flat_map(|block| block.slices.iter().map(move |slice| (block, slice)))
+        {
+            cancel.check()?;
             let thickness = self.thickness * slice.alike as f64;
             walkers.clear();
-            walkers.extend(slice.walkers());
+            walkers.extend(block.hulls[slice.hulls.clone()].iter().map(Walker::from));
             for (area, &direction) in areas.iter_mut().zip(&directions) {
-                cancel.check()?;
-                *area += thickness * shadow_length(&slice.points, &mut walkers, direction, noise);
+                *area += thickness * shadow_length(&block.points, &mut walkers, direction, noise);
             }
         }
         Ok(areas)
     }
 }
 
-/// The slices of a block.
-fn slices_of(wire: &Wire, block: &Range<usize>) -> Vec<Slice> {
-    let mut slices = Vec::new();
-    for slab in Slabs::new(wire, block) {
-        push_slices(&mut slices, wire, &slab);
+/// What a block of slices casts.
+fn cut_block(wire: &Wire, block: &Range<usize>) -> Cutter {
+    let (mut cutter, mut slabs) = (Cutter::default(), Slabs::new(wire, block));
+    while let Some(slab) = slabs.rise() {
+        cutter.cut(wire, slab);
     }
-    slices
+    cutter
 }
 
-/// Adds the slices of a slab, as one where they are all alike.
-fn push_slices(slices: &mut Vec<Slice>, wire: &Wire, slab: &Slab) {
-    let is_upright = |piece: &[u32]| piece.iter().all(|&edge| wire.is_upright(edge));
-    let upright: Vec<bool> = slab.pieces().map(is_upright).collect();
-    let number = if upright.iter().all(|&upright| upright) { 1 } else { slab.slices.len() };
-    let first = slices.len();
-    slices.resize(first + number, Slice { alike: slab.slices.len() / number, ..Slice::default() });
-    let (mut points, mut hull) = (Vec::new(), Vec::new());
-    for (piece, upright) in slab.pieces().zip(upright) {
-        for (slice, height) in slices[first..].iter_mut().zip(slab.slices.clone()) {
-            if !upright || height == slab.slices.start {
-                points.clear();
-                points.extend(piece.iter().map(|&edge| wire.crossing(edge, height)));
-                hull.clear();
-                polygon::push_hull(&mut points, &mut hull);
+/// Finds the extreme points of every hull in a direction.
+fn stand(block: &mut Pieces, direction: Flat) {
+    for hull in &mut block.hulls {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for i in hull.points.clone() {
+            let along = dot(block.points[i], direction);
+            if along < low {
+                (low, hull.extremes[0]) = (along, i);
             }
-            slice.push(&hull);
+            if along >= high {
+                (high, hull.extremes[1]) = (along, i);
+            }
         }
     }
-    slices[first..].iter_mut().for_each(Slice::drop_covered);
 }
 
 /// The interval that a hull covers in a direction that turns counter-clockwise, with the points that bound it.
@@ -176,46 +163,11 @@ struct Walker {
     high: f64,
 }
 
-impl Slice {
-    fn push(&mut self, hull: &[Flat]) {
-        self.hulls.push(self.points.len()..self.points.len() + hull.len());
-        self.points.extend_from_slice(hull);
-    }
-
-    /// Drops the hulls inside the largest one, whose shadows are parts of its own: a plate with ten thousand holes
-    /// casts the shadow of a plate.
-    fn drop_covered(&mut self) {
-        let uncovered = uncovered(&self.points, &self.hulls);
-        if uncovered.len() == self.hulls.len() {
-            return;
-        }
-        let mut kept = Self { alike: self.alike, ..Self::default() };
-        uncovered.into_iter().for_each(|hull| kept.push(&self.points[hull]));
-        *self = kept;
-    }
-
-    /// Finds the extreme points of every hull in a direction.
-    fn stand(&mut self, direction: Flat) {
-        let along = |i: &usize| dot(self.points[*i], direction);
-        let extremes = |hull: &Range<usize>| {
-            let lowest = hull.clone().min_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(hull.start);
-            let highest = hull.clone().max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(hull.start);
-            [lowest, highest]
-        };
-        self.extremes.clear();
-        self.extremes.extend(self.hulls.iter().map(extremes));
-    }
-
-    /// Walkers where it last stood.
-    fn walkers(&self) -> impl Iterator<Item = Walker> + '_ {
-        let stand = |(hull, &[lowest, highest]): (&Range<usize>, &[usize; 2])| Walker {
-            hull: hull.clone(),
-            lowest,
-            highest,
-            low: 0.0,
-            high: 0.0,
-        };
-        self.hulls.iter().zip(&self.extremes).map(stand)
+impl From<&Hull> for Walker {
+    /// Where the hull's extremes are.
+    fn from(hull: &Hull) -> Self {
+        let [lowest, highest] = hull.extremes;
+        Self { hull: hull.points.clone(), lowest, highest, low: 0.0, high: 0.0 }
     }
 }
 
@@ -275,10 +227,10 @@ mod tests {
     #[test]
     fn a_corner_that_rounding_doubled_does_not_stop_the_walk() {
         let points = [[-1.0, -1.0], [1.0, -1.0], [1.0, -1.0 + f64::EPSILON], [1.0, 1.0], [-1.0, 1.0]];
-        let hull = 0..points.len();
-        let square = Slice { points: points.to_vec(), hulls: vec![hull], alike: 1, extremes: Vec::new() };
+        let mut square = Pieces::default();
+        square.push(&points, std::slice::from_ref(&(0..points.len())), 1);
         let angles: Vec<_> = (0..180).map(|degrees| f64::from(degrees).to_radians()).collect();
-        let areas = Slices::new(1.0, vec![square]).areas(&angles, &Cancel::new()).unwrap();
+        let areas = Slices::new(1.0, Sides::default(), vec![square]).areas(&angles, &Cancel::new()).unwrap();
         for (angle, area) in angles.iter().zip(areas) {
             assert!((area - 2.0 * (angle.sin() + angle.cos().abs())).abs() < 1e-12, "{angle}: {area}");
         }

@@ -3,7 +3,30 @@
 //! A convex polygon is half as wide as its sides, seen along that direction, are long (Cauchy). Sides that point the same
 //! way there add up like vectors; sorted by their angle those are a first part of them and the rest.
 
+use super::cover::sides;
 use super::slices::Flat;
+
+/// The sides of convex polygons, each with how far it is turned.
+#[derive(Debug, Default)]
+pub(super) struct Sides(Vec<(u64, Flat)>);
+
+impl Sides {
+    /// Adds those of a polygon, given by its corners in order, as often as it is there.
+    pub fn push(&mut self, corners: &[Flat], times: usize) {
+        let long = |[a, b]: [Flat; 2]| [b[0] - a[0], b[1] - a[1]].map(|c| c * times as f64);
+        let long = sides(corners).map(long).map(upward).filter(|side| *side != [0.0; 2]);
+        self.0.extend(long.map(|side| (turn(side), side)));
+    }
+
+    /// Adds all of some others.
+    pub fn append(&mut self, mut others: Self) {
+        if self.0.is_empty() {
+            *self = others;
+        } else {
+            self.0.append(&mut others.0);
+        }
+    }
+}
 
 /// The sum of the widths of convex polygons as a function of the direction.
 #[derive(Debug, Default)]
@@ -15,14 +38,8 @@ pub(super) struct Widths {
 }
 
 impl Widths {
-    /// Of polygons given by their corners in order, each with how often it is there.
-    pub fn of<'a>(polygons: impl Iterator<Item = (&'a [Flat], usize)>) -> Self {
-        let sides = |(corners, times): (&'a [Flat], usize)| {
-            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-            sides.map(move |(a, b)| [b[0] - a[0], b[1] - a[1]].map(|c| c * times as f64))
-        };
-        let sides = polygons.flat_map(sides).map(upward).filter(|side| *side != [0.0; 2]);
-        let mut sides: Vec<_> = sides.map(|side| (turn(side), side)).collect();
+    /// Of the polygons with such sides.
+    pub fn of(Sides(mut sides): Sides) -> Self {
         sides.sort_unstable_by_key(|(turn, _)| *turn);
         let mut sums = vec![[0.0; 2]];
         sums.extend(sides.iter().scan([0.0; 2], |sum: &mut Flat, (_, side)| {
@@ -60,7 +77,11 @@ mod tests {
     fn widths_of_a_rectangle_and_two_triangles_add_up() {
         let rectangle = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]];
         let triangle = [[1.0, 1.0], [2.0, 1.0], [1.0, 3.0]];
-        let widths = Widths::of([(&rectangle[..], 1), (&triangle[..], 2), (&[[7.0, 7.0]], 1)].into_iter());
+        let mut sides = Sides::default();
+        sides.push(&rectangle, 1);
+        sides.push(&triangle, 2);
+        sides.push(&[[7.0, 7.0]], 1);
+        let widths = Widths::of(sides);
         for (direction, width) in [([1.0, 0.0], 4.0 + 2.0), ([0.0, 1.0], 3.0 + 4.0), ([-0.6, 0.8], 4.8 + 4.4)] {
             assert!((widths.along(direction) - width).abs() < 1e-12, "{direction:?}");
         }

@@ -42,9 +42,35 @@ struct Edge {
     ends: [u32; 2],
     /// The third vertex of the first triangle beside it.
     beside: u32,
+    /// The edge found before it at the same end; 0 for the first.
+    before: u32,
     /// No two triangles beside it go on as one plane: else its crossings lie between those of other edges, and no hull
     /// has a corner there.
     bends: bool,
+    /// All slices cross it at the same place.
+    upright: bool,
+}
+
+/// The edges found so far, each at one of its ends.
+struct Found {
+    /// Corners of triangles at each vertex.
+    corners: Vec<u32>,
+    /// Of each vertex the edge found last; 0 if there is none.
+    last: Vec<u32>,
+}
+
+impl Found {
+    fn none(mesh: &Mesh, ids: &[u32], vertices: usize) -> Self {
+        let mut corners = vec![0; vertices];
+        mesh.triangles.as_flattened().iter().for_each(|&i| corners[ids[i as usize] as usize] += 1);
+        Self { corners, last: vec![0; vertices] }
+    }
+
+    /// Where an edge is kept: at the end with fewer triangles, for there may be any number at the hub of a wheel.
+    fn end(&self, [a, b]: [u32; 2]) -> usize {
+        let [a, b] = [a, b].map(|i| i as usize);
+        if self.corners[a] <= self.corners[b] { a } else { b }
+    }
 }
 
 /// A triangle that crosses slices, as its sides.
@@ -66,13 +92,17 @@ impl Wire {
             WireVertex { at: [table.u.dot(&d), table.v.dot(&d)], height, level }
         });
         let reach = vertices.iter().flat_map(|v| v.at).fold(0.0, |most: f64, c| most.max(c.abs()));
-        let none = Edge { ends: [0; 2], beside: 0, bends: false };
-        let mut wire = Self { vertices, edges: vec![none], low, thickness, noise: NOISE * reach, ..Self::default() };
-        let mut known = FxHashMap::with_capacity_and_hasher(mesh.triangles.len(), Default::default());
+        let none = Edge { ends: [0; 2], beside: 0, before: 0, bends: false, upright: false };
+        let mut wire = Self { vertices, low, thickness, noise: NOISE * reach, ..Self::default() };
+        // Nearly all edges lie between two triangles.
+        wire.edges.reserve(mesh.triangles.len() * 3 / 2 + 1);
+        wire.edges.push(none);
+        wire.triangles.reserve(mesh.triangles.len());
+        let mut found = Found::none(mesh, &ids, wire.vertices.len());
         for triangle in &mesh.triangles {
             let [a, b, c] = triangle.map(|i| ids[i as usize]);
             if a != b && b != c && c != a {
-                wire.push([a, b, c], &mut known);
+                wire.push([a, b, c], &mut found);
             }
         }
         let edges = (1..wire.edges.len() as u32).map(|edge| (wire.span(edge), edge));
@@ -82,7 +112,7 @@ impl Wire {
     }
 
     /// Adds a triangle unless it lies between two slices.
-    fn push(&mut self, mut corners: [u32; 3], known: &mut FxHashMap<u64, u32>) {
+    fn push(&mut self, mut corners: [u32; 3], found: &mut Found) {
         let level = |i: u32| self.vertices[i as usize].level;
         corners.sort_unstable_by_key(|&i| level(i));
         let [a, b, c] = corners;
@@ -90,21 +120,29 @@ impl Wire {
             return;
         }
         let middle = level(b);
-        let long = self.edge([a, c], b, known);
-        let short = [self.edge([a, b], c, known), self.edge([b, c], a, known)];
+        let long = self.edge([a, c], b, found);
+        let short = [self.edge([a, b], c, found), self.edge([b, c], a, found)];
         self.triangles.push(Triangle { long, short, middle });
     }
 
     /// The edge between two vertices, the lower one first, of a triangle whose third vertex is `beside`.
-    fn edge(&mut self, ends: [u32; 2], beside: u32, known: &mut FxHashMap<u64, u32>) -> u32 {
-        let [lower, upper] = ends;
-        if self.vertices[lower as usize].level == self.vertices[upper as usize].level {
+    fn edge(&mut self, ends: [u32; 2], beside: u32, found: &mut Found) -> u32 {
+        let [lower, upper] = ends.map(|i| &self.vertices[i as usize]);
+        if lower.level == upper.level {
             return 0;
         }
-        let number = *known.entry(u64::from(lower) << 32 | u64::from(upper)).or_insert_with(|| {
-            self.edges.push(Edge { ends, beside, bends: true });
-            self.edges.len() as u32 - 1
-        });
+        let end = found.end(ends);
+        let last = &mut found.last[end];
+        let mut number = *last;
+        while number != 0 && self.edges[number as usize].ends != ends {
+            number = self.edges[number as usize].before;
+        }
+        if number == 0 {
+            let apart = (lower.at[0] - upper.at[0]).abs().max((lower.at[1] - upper.at[1]).abs());
+            self.edges.push(Edge { ends, beside, before: *last, bends: true, upright: apart <= self.noise });
+            *last = self.edges.len() as u32 - 1;
+            return *last;
+        }
         let edge = &self.edges[number as usize];
         if edge.bends && edge.beside != beside && self.is_plane(ends, [edge.beside, beside]) {
             self.edges[number as usize].bends = false;
@@ -150,8 +188,7 @@ impl Wire {
 
     /// Whether all slices cross the edge at the same place.
     pub fn is_upright(&self, edge: u32) -> bool {
-        let [a, b] = self.edges[edge as usize].ends.map(|i| self.vertices[i as usize].at);
-        (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) <= self.noise
+        self.edges[edge as usize].upright
     }
 
     /// Where an edge crosses a slice.
@@ -164,36 +201,37 @@ impl Wire {
 }
 
 /// In the order of the first of `count` slices that each crosses.
-fn rising(spans: impl Iterator<Item = (Range<u32>, u32)> + Clone, count: usize) -> Vec<(Range<u32>, u32)> {
-    grouped(spans.map(|span| (span.0.start, span)), count + 1).0
+fn rising(spans: impl Iterator<Item = (Range<u32>, u32)>, count: usize) -> Vec<(Range<u32>, u32)> {
+    let spans: Vec<_> = spans.map(|span| (span.0.start, span)).collect();
+    let mut rising = Vec::new();
+    group(&spans, count + 1, &mut rising, &mut Vec::new());
+    rising
 }
 
-/// Things group by group, those of one in the order in which they came, and where each of `count` groups ends.
-pub(super) fn grouped<T: Clone + Default>(
-    things: impl Iterator<Item = (u32, T)> + Clone,
-    count: usize,
-) -> (Vec<T>, Vec<usize>) {
-    let mut ends = vec![0; count];
-    things.clone().for_each(|(group, _)| ends[group as usize] += 1);
+/// Sorts things by the number of their group, those of one in the order in which they came, and tells where each of
+/// `count` groups ends.
+pub(super) fn group<T: Clone + Default>(things: &[(u32, T)], count: usize, sorted: &mut Vec<T>, ends: &mut Vec<usize>) {
+    ends.clear();
+    ends.resize(count, 0);
+    things.iter().for_each(|(group, _)| ends[*group as usize] += 1);
     // Sizes become starts, and as things are put in, ends.
     let mut total = 0;
     ends.iter_mut().for_each(|size| total += std::mem::replace(size, total));
-    let mut sorted = vec![T::default(); total];
+    sorted.resize(total, T::default());
     for (group, thing) in things {
-        let end = &mut ends[group as usize];
-        sorted[*end] = thing;
+        let end = &mut ends[*group as usize];
+        sorted[*end] = thing.clone();
         *end += 1;
     }
-    (sorted, ends)
 }
 
 /// One vertex for all points with the same coordinates, and the vertex of each point.
 fn weld(mesh: &Mesh, vertex: impl Fn(&Point) -> WireVertex) -> (Vec<WireVertex>, Vec<u32>) {
     let mut known = FxHashMap::with_capacity_and_hasher(mesh.points.len(), Default::default());
-    let mut vertices = Vec::new();
+    let mut vertices = Vec::with_capacity(mesh.points.len());
     let mut id = |p: &Point| {
         let plus_zero: Vector = p.coords.map(|c| c + 0.0); // -0 and 0 are the same place
-        *known.entry([plus_zero.x.to_bits(), plus_zero.y.to_bits(), plus_zero.z.to_bits()]).or_insert_with(|| {
+        *known.entry((plus_zero.x.to_bits(), plus_zero.y.to_bits(), plus_zero.z.to_bits())).or_insert_with(|| {
             vertices.push(vertex(p));
             vertices.len() as u32 - 1
         })
