@@ -39,6 +39,12 @@ impl Isometry {
         Self { rotation: *rotation, translation, chirality: Chirality::Proper }
     }
 
+    /// Whether it maps every image back to where that came from, up to `tolerance` (mm): reflections do, and half turns.
+    pub fn is_involution(&self, tolerance: f64) -> bool {
+        let there_and_back = self.rotation * self.translation + self.translation;
+        (self.rotation - self.rotation.transpose()).amax() <= 1e-12 && there_and_back.amax() <= tolerance
+    }
+
     /// The image of a point.
     pub fn apply(&self, p: &Point) -> Point {
         Point::from(self.rotation * p.coords + self.translation)
@@ -47,6 +53,17 @@ impl Isometry {
     /// The same map as a similarity.
     pub fn as_transform(&self) -> Transform {
         Transform { linear: self.rotation, translation: self.translation }
+    }
+
+    /// The rotation and shift that takes `from` to `to` where it does so within `tolerance` (mm), by three of the points
+    /// far apart. `None` also for nearly collinear points.
+    pub fn exact(from: &[Point], to: &[Point], tolerance: f64) -> Option<Self> {
+        let corners = spanning(from)?;
+        let [a, b] = [from, to].map(|points| frame(&corners.map(|i| points[i])));
+        let rotation = b? * a?.transpose();
+        let translation = to[corners[0]].coords - rotation * from[corners[0]].coords;
+        let moved = Self { rotation, translation, chirality: Chirality::Proper };
+        from.iter().zip(to).all(|(p, q)| (moved.apply(p) - q).amax() <= tolerance).then_some(moved)
     }
 
     /// The isometry of the asked chirality that takes `from` to `to` with the least squared error, scale 1
@@ -78,6 +95,30 @@ impl Isometry {
     }
 }
 
+/// Points no farther from a line than this share of their length leave a turn about it open.
+const COLLINEAR: f64 = 1e-4;
+
+/// The first point, the one farthest from it, and the one farthest from the line through both.
+fn spanning(points: &[Point]) -> Option<[usize; 3]> {
+    let first = *points.first()?;
+    let farthest = |distance: &dyn Fn(&Point) -> f64| {
+        (0..points.len()).max_by(|&i, &j| distance(&points[i]).total_cmp(&distance(&points[j])))
+    };
+    let second = farthest(&|p| (p - first).norm_squared())?;
+    let along = points[second] - first;
+    let from_line = |p: &Point| (p - first).cross(&along).norm_squared();
+    let third = farthest(&from_line)?;
+    let spans = from_line(&points[third]) > COLLINEAR.powi(2) * along.norm_squared().powi(2);
+    spans.then_some([0, second, third])
+}
+
+/// Right-handed axes: from the first point to the second, and to the third at right angles.
+fn frame([a, b, c]: &[Point; 3]) -> Option<Matrix> {
+    let x = (b - a).try_normalize(0.0)?;
+    let z = x.cross(&(c - a)).try_normalize(0.0)?;
+    Some(Matrix::from_columns(&[x, z.cross(&x), z]))
+}
+
 /// The mean of the points.
 pub fn mean(points: &[Point]) -> Point {
     let sum: Vector = points.iter().map(|p| p.coords).sum();
@@ -105,6 +146,37 @@ mod tests {
     }
 
     #[test]
+    fn reflections_and_half_turns_map_images_back() {
+        let plane = Plane::through(&Point::new(5.0, 1.0, 0.0), &Vector::new(1.0, 2.0, 3.0));
+        let mirror = plane.reflection();
+        let glide = Isometry { translation: mirror.translation + Vector::new(2.0, -1.0, 0.0), ..mirror };
+        let turn = |degrees: f64| {
+            let turned = crate::geometry::revolution::turn(&Vector::z(), degrees.to_radians());
+            Isometry::about(&Point::new(1.0, 2.0, 3.0), &turned)
+        };
+        assert_eq!([mirror, glide, turn(180.0), turn(90.0)].map(|i| i.is_involution(1e-9)), [true, false, true, false]);
+    }
+
+    #[test]
+    fn what_is_turned_exactly_needs_no_fit() {
+        let turned = crate::geometry::revolution::turn(&Vector::new(0.6, 0.0, 0.8), 1.0);
+        let moved = Isometry::about(&Point::new(4.0, 0.0, 1.0), &turned);
+        let mut images: Vec<_> = corners().iter().map(|p| moved.apply(p)).collect();
+        let exact = Isometry::exact(&corners(), &images, 1e-12).unwrap();
+        assert!((exact.rotation - turned).amax() < 1e-12 && (exact.translation - moved.translation).amax() < 1e-12);
+        images[3].x += 1e-6;
+        assert!(Isometry::exact(&corners(), &images, 1e-7).is_none());
+        assert!(
+            Isometry::exact(
+                &corners(),
+                &corners().iter().map(|p| Point::new(-p.x, p.y, p.z)).collect::<Vec<_>>(),
+                1e-7
+            )
+            .is_none()
+        );
+    }
+
+    #[test]
     fn coplanar_corners_have_both_solutions() {
         let flat: Vec<_> = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 2.0, 0.0]].map(Point::from).to_vec();
         let moved: Vec<_> = flat.iter().map(|p| p + Vector::new(1.0, 1.0, 1.0)).collect();
@@ -117,5 +189,6 @@ mod tests {
     fn collinear_points_have_no_isometry() {
         let line: Vec<_> = (0..4).map(|i| Point::new(i as f64, 0.0, 0.0)).collect();
         assert!(Isometry::fit(&line, &line, Chirality::Proper).is_none());
+        assert!(Isometry::exact(&line, &line, 1e-9).is_none());
     }
 }

@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::cells::floor;
 use super::{Plane, Point};
 
 /// Width of a cell of normal components.
@@ -11,10 +12,13 @@ const NORMAL_CELL: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub struct PlaneIndex {
     reference: Point,
-    /// Largest angle between planes that count as one, radians.
+    /// Largest angle between planes that count as one, radians, and its tangent.
     angle: f64,
+    tangent: f64,
     /// Largest distance of the reference point's feet along the normal, mm.
     distance: f64,
+    /// Cells to the mm of distance.
+    per_mm: f64,
     planes: Vec<Plane>,
     cells: FxHashMap<[i32; 4], Vec<u32>>,
 }
@@ -23,7 +27,9 @@ impl PlaneIndex {
     /// An empty index; planes are one within `angle` (radians, below 0.05) and `distance` (mm, above 0) as seen from
     /// `reference`.
     pub fn new(reference: Point, angle: f64, distance: f64) -> Self {
-        Self { reference, angle, distance, planes: Vec::new(), cells: FxHashMap::default() }
+        let per_mm = 1.0 / (8.0 * distance);
+        let (planes, cells) = (Vec::new(), FxHashMap::default());
+        Self { reference, angle, tangent: angle.tan(), distance, per_mm, planes, cells }
     }
 
     /// The planes in the order in which they came.
@@ -33,9 +39,9 @@ impl PlaneIndex {
 
     /// Whether two planes are one.
     pub fn same(&self, a: &Plane, b: &Plane) -> bool {
-        let sign = a.normal.dot(&b.normal).signum();
-        let (s, t) = (a.signed_distance(&self.reference), sign * b.signed_distance(&self.reference));
-        a.angle_to(b) <= self.angle && (s - t).abs() <= self.distance
+        let cosine = a.normal.dot(&b.normal);
+        let (s, t) = (a.signed_distance(&self.reference), cosine.signum() * b.signed_distance(&self.reference));
+        (s - t).abs() <= self.distance && a.normal.cross(&b.normal).norm() <= self.tangent * cosine.abs()
     }
 
     /// Position of the first plane that is the same as this one.
@@ -76,9 +82,9 @@ impl PlaneIndex {
     }
 
     fn cell(&self, i: usize, x: f64) -> i32 {
-        let width = if i < 3 { NORMAL_CELL } else { 8.0 * self.distance };
+        let per_unit = if i < 3 { 1.0 / NORMAL_CELL } else { self.per_mm };
         // Normals along the axes, by far the most frequent, have components in the middle of their cells.
-        (x / width + 0.5).floor() as i32
+        floor(x * per_unit + 0.5)
     }
 }
 

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::Point;
+use super::cells::floor;
 
 /// Ends a chain.
 const END: u32 = u32::MAX;
@@ -11,9 +12,12 @@ const END: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub struct PointGrid {
     points: Vec<Point>,
-    width: f64,
+    /// In the middle of a cell; near the points, wherever the model lies.
+    origin: Point,
+    /// Cells to the mm.
+    per_mm: f64,
     /// The first point of each cell ..
-    first: FxHashMap<[i64; 3], u32>,
+    first: FxHashMap<[i32; 3], u32>,
     /// .. and the next one in the cell of each point.
     next: Vec<u32>,
 }
@@ -23,7 +27,8 @@ impl PointGrid {
     pub fn new(points: impl IntoIterator<Item = Point>, width: f64) -> Self {
         let points: Vec<_> = points.into_iter().collect();
         let next = vec![END; points.len()];
-        let mut grid = Self { points, width, first: FxHashMap::default(), next };
+        let origin = points.first().copied().unwrap_or_default();
+        let mut grid = Self { points, origin, per_mm: 1.0 / width, first: FxHashMap::default(), next };
         // From the last, so that chains grow.
         for i in (0..grid.points.len()).rev() {
             let cell = grid.cell(&grid.points[i], 0.0);
@@ -32,17 +37,22 @@ impl PointGrid {
         grid
     }
 
-    fn cell(&self, p: &Point, shift: f64) -> [i64; 3] {
-        // What is in the middle of a model is in the middle of a cell.
-        std::array::from_fn(|i| ((p[i] + shift) / self.width + 0.5).floor() as i64)
+    #[inline]
+    fn cell(&self, p: &Point, shift: f64) -> [i32; 3] {
+        std::array::from_fn(|i| floor((p[i] - self.origin[i] + shift) * self.per_mm + 0.5))
     }
 
     /// The numbers of the points within `radius` of `p`, cell by cell and in growing order in each.
     pub fn near(&self, p: &Point, radius: f64) -> impl Iterator<Item = u32> {
         let (low, high) = (self.cell(p, -radius), self.cell(p, radius));
-        let cells = (low[0]..=high[0])
-            .flat_map(move |x| (low[1]..=high[1]).flat_map(move |y| (low[2]..=high[2]).map(move |z| [x, y, z])));
-        let chain = |cell| {
+        let count: [usize; 3] = std::array::from_fn(|i| (i64::from(high[i]) - i64::from(low[i]) + 1) as usize);
+        // Mostly one: then nothing is divided.
+        let cells = (0..count.iter().product()).map(move |n| {
+            let (xy, z) = if n == 0 { (0, 0) } else { (n / count[2], n % count[2]) };
+            let (x, y) = if xy == 0 { (0, 0) } else { (xy / count[1], xy % count[1]) };
+            [low[0] + x as i32, low[1] + y as i32, low[2] + z as i32]
+        });
+        let chain = move |cell| {
             let first = self.first.get(&cell).copied();
             std::iter::successors(first, |&i| Some(self.next[i as usize]).filter(|&next| next != END))
         };

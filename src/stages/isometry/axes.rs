@@ -47,6 +47,7 @@ pub(super) fn planes(measures: &Measures, outlines: &[Outline], count: usize) ->
             weight: area,
             source: Source::Axes,
             pair: None,
+            halfway: false,
         }));
     };
     let off = off_axis(outlines);

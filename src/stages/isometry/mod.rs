@@ -79,6 +79,8 @@ pub struct Candidate {
     pub source: Source,
     /// Position of the pair in [`Matches::pairs`].
     pub pair: Option<u32>,
+    /// Whether the plane lies halfway between exact images: enough for a vote, less than a fit to all corners.
+    pub halfway: bool,
 }
 
 /// Faces that direct isometries map onto others.
@@ -174,6 +176,7 @@ fn mirror_of(
         weight: area * pair.weight,
         source,
         pair: Some(index),
+        halfway: false,
     };
     if pair.correspondence == Correspondence::Centroids {
         let plane = if options.cornerless { axes::bisector(a, b, size)? } else { return None };
@@ -182,16 +185,20 @@ fn mirror_of(
     if pair.order() == Some(Order::Same) && a.oriented && b.oriented && !options.umeyama {
         return None;
     }
+    let source = if single { Source::SingleFace } else { Source::Corners };
+    let most = (options.residual * size).powi(2);
     let (plane, squared) = if options.umeyama {
         let (isometry, squared) = Isometry::fit(from, to, Chirality::Improper)?;
         (mirror::plane_of(&isometry, options.residual)?, squared)
+    } else if !mirror::may_fit(from, to, most) {
+        return None;
+    } else if let Some(plane) = mirror::halfway(from, to, EXACT * size, options.eigen_gap) {
+        return Some(Candidate { halfway: true, ..candidate(plane, 0.0, source) });
     } else {
-        let fit = mirror::fit(from, to, (options.residual * size).powi(2))?;
+        let fit = mirror::fit(from, to)?;
         (fit.gap >= options.eigen_gap).then_some((fit.plane, fit.squared))?
     };
-    let source = if single { Source::SingleFace } else { Source::Corners };
-    let residual = squared.max(0.0).sqrt();
-    (residual <= options.residual * size).then(|| candidate(plane, residual, source))
+    (squared <= most).then(|| candidate(plane, squared.max(0.0).sqrt(), source))
 }
 
 /// The kinds of direct isometry.
@@ -204,7 +211,7 @@ enum Direct {
 /// Sine of the angle up to which a turn is none.
 const NO_TURN: f64 = 1e-3;
 
-/// Corners that are shifted to within this share of D need no fit to tell that nothing is turned.
+/// Corners that are moved to within this share of D need no fit to tell by what.
 const EXACT: f64 = 1e-9;
 
 /// Whether all points are shifted alike.
@@ -246,7 +253,8 @@ fn direct(
     if known.turned && !may_be_shifted(from, to, options.residual * size) {
         return None;
     }
-    let (isometry, squared) = Isometry::fit(from, to, Chirality::Proper)?;
+    let exact = Isometry::exact(from, to, EXACT * size).map(|isometry| (isometry, 0.0));
+    let (isometry, squared) = exact.or_else(|| Isometry::fit(from, to, Chirality::Proper))?;
     let turned = (isometry.rotation - crate::geometry::Matrix::identity()).norm() > NO_TURN;
     (squared.max(0.0).sqrt() <= options.residual * size).then(|| kind(turned))
 }

@@ -269,7 +269,7 @@ impl Merger<'_> {
         if residual > exact && validated.pairs.len() > 1 {
             let mut corners = Corners::default();
             validated.pairs.iter().for_each(|&i| corners.add(&self.matches.pairs[i as usize], self.outlines));
-            if let Some(fit) = mirror::fit(&corners.from, &corners.to, residual.powi(2))
+            if let Some(fit) = mirror::fit(&corners.from, &corners.to)
                 && fit.squared.sqrt() <= residual
             {
                 (plane, residual) = (fit.plane, fit.squared.sqrt());

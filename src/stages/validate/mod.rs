@@ -24,8 +24,8 @@ mod whole_faces;
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Plane, PlaneIndex};
 use crate::stages::corner_filter::Outline;
-use crate::stages::isometry::{Candidate, Candidates, Source};
-use crate::stages::pair_match::Matches;
+use crate::stages::isometry::{Candidate, Candidates, Source, mirror};
+use crate::stages::pair_match::{Corners, Matches};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
 use faces::FaceSamples;
@@ -154,7 +154,7 @@ pub fn validate(
         }
     } else {
         let mut best: f64 = 0.0;
-        for group in distinct(parsed, matches, &candidates.mirrors, options, cancel).map_err(cancelled)? {
+        for group in distinct(parsed, outlines, matches, &candidates.mirrors, options, cancel).map_err(cancelled)? {
             cancel.check().map_err(cancelled)?;
             let least = if group.paired { 0.05 } else { SELF_EVIDENT - DOUBT };
             let needed = (best - options.slack).max(least);
@@ -217,6 +217,7 @@ struct Group {
 /// the most voted planes of each source.
 fn distinct(
     parsed: &Parsed,
+    outlines: &[Outline],
     matches: &Matches,
     candidates: &[Candidate],
     options: &Options,
@@ -238,8 +239,8 @@ fn distinct(
                 groups[i].pairs.extend(candidate.pair);
             }
         } else {
-            index.add(candidate.plane);
-            let Candidate { plane, residual, weight, source, pair } = *candidate;
+            let Candidate { plane, residual, weight, source, pair, .. } = fitted(candidate, matches, outlines);
+            index.add(plane);
             let paired = of_two(candidate);
             groups.push(Group { plane, residual, weight, source, paired, pairs: pair.into_iter().collect() });
         }
@@ -252,6 +253,17 @@ fn distinct(
         *count <= options.planes
     });
     Ok(groups)
+}
+
+/// The candidate, fitted to all corners of its pair where it lies halfway: what stands for others is to be exact.
+fn fitted(candidate: &Candidate, matches: &Matches, outlines: &[Outline]) -> Candidate {
+    let pair = candidate.pair.filter(|_| candidate.halfway);
+    let fit = pair.and_then(|i| {
+        let Corners { from, to } = matches.pairs[i as usize].corners(outlines);
+        mirror::fit(&from, &to)
+    });
+    let of_fit = |f: mirror::Fit| Candidate { plane: f.plane, residual: f.squared.max(0.0).sqrt(), ..*candidate };
+    fit.map_or(*candidate, of_fit)
 }
 
 /// Support from which a plane needs no pair to speak for it: the halves may be split differently.

@@ -194,12 +194,14 @@ impl SurfaceField {
         needed: f64,
         cancel: &Cancel,
     ) -> Result<Support, Cancelled> {
-        let mut recent = Recent::default();
+        let (mut recent, mut whole) = (Recent::default(), self.whole.under(isometry));
         // A little less than needed, for rounding.
         let most_missed = ((1.0 - needed) * count as f64).ceil() as usize + 1;
         for of_face in samples.chunk_by(|a, b| a.face == b.face) {
             cancel.check()?;
-            tally.add(of_face.len(), self.hits(isometry, of_face, &mut recent));
+            let hits =
+                if whole.has(of_face[0].face) { of_face.len() } else { self.hits(isometry, of_face, &mut recent) };
+            tally.add(of_face.len(), hits);
             if tally.missed() > most_missed {
                 break;
             }
@@ -207,10 +209,9 @@ impl SurfaceField {
         Ok(tally.support(count))
     }
 
-    /// How many samples of one face are mapped.
+    /// How many samples of a face are mapped that is not mapped as a whole.
     fn hits(&self, isometry: &Isometry, samples: &[Sample], recent: &mut Recent) -> usize {
-        let first = &samples[0];
-        if self.whole.maps(isometry, first.face) || self.maps_quad(isometry, first, recent) {
+        if self.maps_quad(isometry, &samples[0], recent) {
             return samples.len();
         }
         let mut image = None;
@@ -235,16 +236,15 @@ impl SurfaceField {
     /// The coarse support, or `None` as soon as it is (with three standard deviations) below `needed`.
     pub fn reaches(&self, isometry: &Isometry, needed: f64) -> Option<f64> {
         let samples = self.samples(Round::Coarse);
-        let (mut hits, mut recent) = (0, Recent::default());
-        // Of each face whether it is mapped as a whole, and else onto what its last sample was mapped.
-        let mut faces: Vec<Option<(bool, Option<&Footprint>)>> = vec![None; self.whole.count()];
+        let (mut hits, mut recent, mut whole) = (0, Recent::default(), self.whole.under(isometry));
+        // Of each face onto what its last sample was mapped.
+        let mut images: Vec<Option<&Footprint>> = vec![None; whole.count()];
         // A step coprime to most counts spreads also the first few samples over the whole surface.
         let step = spread_step(samples.len());
         for n in 1..=samples.len() {
             let sample = &samples[n * step % samples.len()];
-            let maps_face = || (self.whole.maps(isometry, sample.face), None);
-            let (is_whole, image) = faces[sample.face.index()].get_or_insert_with(maps_face);
-            hits += usize::from(*is_whole || self.maps(isometry, sample, &mut recent, image));
+            let image = &mut images[sample.face.index()];
+            hits += usize::from(whole.has(sample.face) || self.maps(isometry, sample, &mut recent, image));
             if n >= 8 && n % 4 == 0 {
                 let share = hits as f64 / n as f64;
                 let deviation = ((share * (1.0 - share) + 1.0 / n as f64) / n as f64).sqrt();

@@ -57,16 +57,21 @@ impl WholeFaces {
         Self { centroids, faces, points: mesh.points.clone(), radius, both }
     }
 
-    /// Faces of the mesh.
-    pub fn count(&self) -> usize {
-        self.faces.len()
+    /// The faces under an isometry.
+    pub fn under<'a>(&'a self, isometry: &'a Isometry) -> Mapped<'a> {
+        Mapped {
+            faces: self,
+            isometry,
+            goes_back: isometry.is_involution(self.radius),
+            known: vec![None; self.faces.len()],
+        }
     }
 
-    /// Whether the isometry maps a face onto one other (or itself).
-    pub fn maps(&self, isometry: &Isometry, id: PlacedFaceId) -> bool {
+    /// The face that the isometry maps a face onto (itself, maybe), if it is one.
+    fn image(&self, isometry: &Isometry, id: PlacedFaceId) -> Option<PlacedFaceId> {
         let centroid = isometry.apply(self.centroids.point(id.0));
-        let mut near = self.centroids.near(&centroid, self.radius);
-        near.any(|other| self.is_image(isometry, id, PlacedFaceId(other)))
+        let mut near = self.centroids.near(&centroid, self.radius).map(PlacedFaceId);
+        near.find(|&other| self.is_image(isometry, id, other))
     }
 
     /// Whether the isometry maps face `a` onto face `b`.
@@ -110,6 +115,38 @@ impl WholeFaces {
             last = found.unwrap_or(last);
             found.is_some()
         })
+    }
+}
+
+/// Which faces an isometry maps onto others; each is looked up once at most.
+#[derive(Clone, Debug)]
+pub struct Mapped<'a> {
+    faces: &'a WholeFaces,
+    isometry: &'a Isometry,
+    /// Whether the isometry maps images back.
+    goes_back: bool,
+    known: Vec<Option<bool>>,
+}
+
+impl Mapped<'_> {
+    /// Faces of the mesh.
+    pub fn count(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Whether a face is mapped onto one other (or itself).
+    pub fn has(&mut self, id: PlacedFaceId) -> bool {
+        if let Some(known) = self.known[id.index()] {
+            return known;
+        }
+        let image = self.faces.image(self.isometry, id);
+        if let Some(image) = image
+            && self.goes_back
+        {
+            self.known[image.index()] = Some(true);
+        }
+        self.known[id.index()] = Some(image.is_some());
+        image.is_some()
     }
 }
 
@@ -171,7 +208,7 @@ mod tests {
         let pin = || octahedron(5.0).collect();
         let maps = |left, both| {
             let faces = WholeFaces::of(&one_face(pin(), left), 1e-3, both);
-            faces.maps(&mirror, PlacedFaceId(0))
+            faces.under(&mirror).has(PlacedFaceId(0))
         };
         assert!(maps(octahedron(-5.0).collect(), false));
         assert!(!maps(octahedron(-5.0).map(turned).collect(), false));
@@ -191,7 +228,7 @@ mod tests {
             [(left, false, true), (inside_out, false, false), (inside_out, true, true), (other, true, false)]
         {
             let faces = WholeFaces::of(&mesh(&[right, image]), 1e-3, both);
-            assert_eq!(faces.maps(&mirror, PlacedFaceId(0)), maps);
+            assert_eq!(faces.under(&mirror).has(PlacedFaceId(0)), maps);
             assert_eq!(faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(1)), maps);
             assert!(!faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(0)));
         }
