@@ -6,12 +6,28 @@ use crate::geometry::sides::Sides;
 
 /// Places tried for a cut.
 const BINS: usize = 8;
+/// How much larger than those of two neighbours the box of both may be.
+const NEIGHBOURS: f32 = 1.25;
 
-/// A triangle while the tree is built.
+/// Triangles that stay together while the tree is built.
 #[derive(Clone, Copy)]
 pub(super) struct Item {
     pub bounds: Bounds,
-    pub index: u32,
+    /// The first of the triangles, and how many they are.
+    pub first: u32,
+    pub count: u32,
+}
+
+impl Item {
+    /// Takes the triangle of the next item in, if there is room in a leaf and they are neighbours: if the box of all is
+    /// no larger than theirs together.
+    pub fn joined(&self, next: &Self) -> Option<Self> {
+        let mut bounds = self.bounds;
+        bounds.join(&next.bounds);
+        let apart = self.bounds.half_area() + next.bounds.half_area();
+        let count = self.count + next.count;
+        (count as usize <= LEAF && bounds.half_area() <= NEIGHBOURS * apart).then_some(Self { bounds, count, ..*self })
+    }
 }
 
 /// A box, each end as wide as a vector register: the fourth number means nothing.
@@ -59,7 +75,7 @@ fn greater(a: [f32; 4], b: [f32; 4]) -> [f32; 4] {
     std::array::from_fn(|i| more(a[i], b[i]))
 }
 
-/// Adds the node of all items, of which the first is number `first`, and the nodes below it.
+/// Adds the node of all items, of which the first is number `first`, and the nodes below it. Leaves hold items.
 pub(super) fn build(nodes: &mut Vec<Node>, items: &mut [Item], first: u32, level: usize) -> u32 {
     let index = nodes.len();
     nodes.push(Node::EMPTY);
@@ -76,7 +92,7 @@ pub(super) fn build(nodes: &mut Vec<Node>, items: &mut [Item], first: u32, level
             continue;
         }
         let (from, count) = (first + start as u32, part.len() as u32);
-        let child = if part.len() <= LEAF {
+        let child = if is_leaf(part) {
             Child { first: from, count }
         } else {
             Child { first: build(nodes, part, from, level + 1), count: 0 }
@@ -91,10 +107,14 @@ pub(super) fn build(nodes: &mut Vec<Node>, items: &mut [Item], first: u32, level
     index as u32
 }
 
+fn is_leaf(items: &[Item]) -> bool {
+    items.len() <= 1 || (items.len() <= LEAF && items.iter().map(|item| item.count as usize).sum::<usize>() <= LEAF)
+}
+
 /// Parts items in two where the boxes come out smallest for their numbers (the surface area heuristic), or, deep down,
 /// in the middle. Returns the size of the first part and the boxes of both; what fits in a leaf stays whole.
 fn cut(items: &mut [Item], level: usize) -> (usize, [Bounds; 2]) {
-    if items.len() <= LEAF {
+    if is_leaf(items) {
         return (items.len(), [Bounds::of(items), Bounds::EMPTY]);
     }
     let (mut low, mut high) = (Bounds::EMPTY.low, Bounds::EMPTY.high);
@@ -113,7 +133,7 @@ fn cut(items: &mut [Item], level: usize) -> (usize, [Bounds; 2]) {
     }
     let half = items.len() / 2;
     items.select_nth_unstable_by(half, |a, b| {
-        a.bounds.middle(axis).total_cmp(&b.bounds.middle(axis)).then(a.index.cmp(&b.index))
+        a.bounds.middle(axis).total_cmp(&b.bounds.middle(axis)).then(a.first.cmp(&b.first))
     });
     (half, [Bounds::of(&items[..half]), Bounds::of(&items[half..])])
 }
@@ -124,7 +144,7 @@ fn best_bin(items: &[Item], bin: impl Fn(&Item) -> usize) -> (usize, [Bounds; 2]
     for item in items {
         let (bounds, count) = &mut bins[bin(item)];
         bounds.join(&item.bounds);
-        *count += 1;
+        *count += item.count;
     }
     let mut behind = [(Bounds::EMPTY, 0u32); BINS];
     for i in (1..BINS).rev() {

@@ -9,6 +9,7 @@ mod triangle;
 
 use arrayvec::ArrayVec;
 
+use super::order::{less, more};
 use super::sides::{self, Sides};
 use super::{Aabb, Point, Vector};
 use build::{Bounds, Item, build};
@@ -141,9 +142,9 @@ impl Bvh {
         }
         let shrink = 2.0 / (bounds.max - bounds.min).amax();
         let mut tree = Self { triangles, centre: bounds.centre(), shrink, ..Self::default() };
-        let mut items: Vec<_> = tree.triangles.iter().zip(0..).map(|(t, i)| tree.item(t, i)).collect();
+        let mut items = tree.items();
         build(&mut tree.nodes, &mut items, 0, 0);
-        tree.triangles = items.iter().map(|item| tree.triangles[item.index as usize].clone()).collect();
+        tree.settle(&items);
         tree.slabs = tree.triangles.iter().map(|t| Slab::of(t, &tree.centre, shrink)).collect();
         tree
     }
@@ -160,13 +161,47 @@ impl Bvh {
         [d.x as f32, d.y as f32, d.z as f32]
     }
 
+    /// The triangles one by one, neighbours of one number together: most faces are listed in rows, and fewer items make
+    /// a tree sooner.
+    fn items(&self) -> Vec<Item> {
+        let mut items: Vec<Item> = Vec::with_capacity(self.triangles.len());
+        for (index, triangle) in (0..).zip(&self.triangles) {
+            let item = self.item(triangle, index);
+            if let Some(last) = items.last_mut()
+                && self.triangles[last.first as usize].id == triangle.id
+                && let Some(joined) = last.joined(&item)
+            {
+                *last = joined;
+            } else {
+                items.push(item);
+            }
+        }
+        items
+    }
+
     fn item(&self, triangle: &Triangle, index: u32) -> Item {
         let [a, b, c] = triangle.corners.each_ref().map(|p| self.local(p));
         let end = |pick: fn(f32, f32) -> f32, pad: f32| {
             std::array::from_fn(|i| if i < 3 { pick(pick(a[i], b[i]), c[i]) + pad } else { 0.0 })
         };
-        let (low, high) = (end(f32::min, -PAD), end(f32::max, PAD));
-        Item { bounds: Bounds { low, high, sides: sides::of(&triangle.normal) }, index }
+        let (low, high) = (end(less, -PAD), end(more, PAD));
+        Item { bounds: Bounds { low, high, sides: sides::of(&triangle.normal) }, first: index, count: 1 }
+    }
+
+    /// Puts the triangles into the order of their items, and their positions into the leaves.
+    fn settle(&mut self, items: &[Item]) {
+        let mut starts = Vec::with_capacity(items.len() + 1);
+        let mut ordered = Vec::with_capacity(self.triangles.len());
+        for item in items {
+            starts.push(ordered.len() as u32);
+            ordered.extend_from_slice(&self.triangles[item.first as usize..(item.first + item.count) as usize]);
+        }
+        starts.push(ordered.len() as u32);
+        for child in self.nodes.iter_mut().flat_map(|node| &mut node.children).filter(|child| child.count > 0) {
+            let [from, to] = [child.first, child.first + child.count].map(|item| starts[item as usize]);
+            *child = Child { first: from, count: to - from };
+        }
+        self.triangles = ordered;
     }
 
     /// Whether some triangle that `accept` takes is there. The triangles that were found last are looked at first:
