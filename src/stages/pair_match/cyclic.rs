@@ -20,16 +20,51 @@ pub(super) fn from_offset<T>(corners: &[T], offset: usize, order: Order, look: i
     }
 }
 
-/// Corners of a closed loop and the distances between consecutive ones, measured once for all its pairs.
-pub(super) struct Loop<'a> {
-    corners: &'a [Point],
+/// Closed loops of corners and the distances between consecutive ones, measured once for all pairs of loops.
+#[derive(Default)]
+pub(super) struct Loops<'a> {
+    corners: Vec<&'a [Point]>,
+    /// Of each loop the sides twice around, and twice around the other way: from any corner on they lie side by side.
     sides: Vec<f64>,
+    /// Where those of each loop start.
+    starts: Vec<usize>,
 }
 
-impl<'a> Loop<'a> {
-    pub fn new(corners: &'a [Point]) -> Self {
+impl<'a> Loops<'a> {
+    pub fn push(&mut self, corners: &'a [Point]) {
+        let start = self.sides.len();
+        self.corners.push(corners);
+        self.starts.push(start);
         let next = corners.iter().cycle().skip(1);
-        Self { corners, sides: corners.iter().zip(next).map(|(p, q)| (q - p).norm()).collect() }
+        self.sides.extend(corners.iter().zip(next).map(|(p, q)| (q - p).norm()));
+        let end = self.sides.len();
+        self.sides.extend_from_within(start..end);
+        self.sides.extend_from_within(start..);
+        self.sides[2 * end - start..].reverse();
+    }
+
+    pub fn get(&self, number: usize) -> Loop<'_> {
+        let (corners, start) = (self.corners[number], self.starts[number]);
+        Loop { corners, sides: &self.sides[start..start + 4 * corners.len()] }
+    }
+}
+
+/// One of the loops.
+#[derive(Clone, Copy)]
+pub(super) struct Loop<'a> {
+    corners: &'a [Point],
+    sides: &'a [f64],
+}
+
+impl Loop<'_> {
+    /// The sides from a corner on. Side k runs from corner k to k + 1; reversed, it is met from its other end.
+    fn from(&self, offset: usize, order: Order) -> &[f64] {
+        let n = self.corners.len();
+        let start = match order {
+            Order::Same => offset,
+            Order::Reversed => 3 * n - 1 - (offset + n - 1) % n,
+        };
+        &self.sides[start..start + n]
     }
 }
 
@@ -45,21 +80,21 @@ impl Search<'_> {
     /// Shows `keep` every correspondence in the given order whose sum is within the limit.
     pub(super) fn matches(
         &self,
-        a: &Loop,
-        b: &Loop,
+        a: Loop,
+        b: Loop,
         order: Order,
         keep: &mut impl FnMut(Correspondence),
     ) -> Result<(), Cancelled> {
-        let (p, q) = (&a.sides, &b.sides);
-        if p.len() == q.len() {
-            let total = self.limit * p.len() as f64;
-            for offset in 0..q.len() {
+        let (count, others) = (a.corners.len(), b.corners.len());
+        if count == others {
+            let total = self.limit * count as f64;
+            for offset in 0..count {
                 self.cancel.check()?;
-                if difference(p, q, offset, order, total, self.options.absolute) <= total {
+                if difference(a.from(0, Order::Same), b.from(offset, order), total, self.options.absolute) <= total {
                     keep(Correspondence::Cyclic { offset: offset as u32, order });
                 }
             }
-        } else if p.len().abs_diff(q.len()) <= self.options.extra_corners {
+        } else if count.abs_diff(others) <= self.options.extra_corners {
             self.subsequences(a.corners, b.corners, order, keep)?;
         }
         Ok(())
@@ -90,19 +125,7 @@ impl Search<'_> {
 }
 
 /// The sum of eq. (3), given up once it passes `limit`.
-fn difference(p: &[f64], q: &[f64], offset: usize, order: Order, limit: f64, absolute: bool) -> f64 {
-    let n = p.len();
-    // Side k runs from corner k to k + 1; reversed, it is met from its other end.
-    match order {
-        Order::Same => sum_of_differences(p, q[offset..].iter().chain(&q[..offset]), limit, absolute),
-        Order::Reversed => {
-            let behind = (offset + n - 1) % n + 1;
-            sum_of_differences(p, q[..behind].iter().rev().chain(q[behind..].iter().rev()), limit, absolute)
-        }
-    }
-}
-
-fn sum_of_differences<'a>(p: &[f64], q: impl Iterator<Item = &'a f64>, limit: f64, absolute: bool) -> f64 {
+fn difference(p: &[f64], q: &[f64], limit: f64, absolute: bool) -> f64 {
     let mut sum = 0.0;
     for (side, other) in p.iter().zip(q) {
         sum += if absolute { (side - other).abs() } else { side - other };
@@ -153,10 +176,17 @@ mod tests {
         list.iter().map(|&[x, y]| Point::new(x, y, 0.0)).collect()
     }
 
+    fn loops<'a>(of: impl IntoIterator<Item = &'a [Point]>) -> Loops<'a> {
+        let mut loops = Loops::default();
+        of.into_iter().for_each(|corners| loops.push(corners));
+        loops
+    }
+
     fn found(a: &[Point], b: &[Point], order: Order, options: &Options) -> Vec<Correspondence> {
         let mut all = Vec::new();
         let search = Search { limit: 1e-3, options, cancel: &Cancel::new() };
-        search.matches(&Loop::new(a), &Loop::new(b), order, &mut |c| all.push(c)).unwrap();
+        let loops = loops([a, b]);
+        search.matches(loops.get(0), loops.get(1), order, &mut |c| all.push(c)).unwrap();
         all
     }
 
@@ -190,10 +220,11 @@ mod tests {
         let (options, cancel) = (Options::default(), Cancel::new());
         cancel.cancel();
         let search = Search { limit: 1e-3, options: &options, cancel: &cancel };
-        let loops = [3, 4].map(|n| (0..n).map(|i| Point::new(f64::from(i), 0.0, 0.0)).collect::<Vec<_>>());
-        for other in &loops {
-            let [first, other] = [&loops[0], other].map(|corners| Loop::new(corners));
-            assert!(search.matches(&first, &other, Order::Same, &mut |_| panic!("found one")).is_err());
+        let corners = [3, 4].map(|n| (0..n).map(|i| Point::new(f64::from(i), 0.0, 0.0)).collect::<Vec<_>>());
+        let loops = loops(corners.iter().map(|c| &c[..]));
+        for other in 0..2 {
+            let found = search.matches(loops.get(0), loops.get(other), Order::Same, &mut |_| panic!("found one"));
+            assert!(found.is_err());
         }
     }
 

@@ -187,9 +187,11 @@ pub fn pair_match(
     cancel: &Cancel,
 ) -> Result<Matches, ModelError> {
     let size = parsed.measures.tolerance.size();
+    let mut loops = cyclic::Loops::default();
+    outlines.iter().for_each(|outline| loops.push(&outline.corners));
     let mut matcher = Matcher {
         outlines,
-        loops: outlines.iter().map(|outline| cyclic::Loop::new(&outline.corners)).collect(),
+        loops,
         options,
         cancel,
         size,
@@ -208,7 +210,7 @@ pub fn pair_match(
 struct Matcher<'a> {
     outlines: &'a [Outline],
     /// Their corners.
-    loops: Vec<cyclic::Loop<'a>>,
+    loops: cyclic::Loops<'a>,
     options: &'a Options,
     cancel: &'a Cancel,
     size: f64,
@@ -279,7 +281,7 @@ impl Matcher<'_> {
             if order == Order::Same && a == b && !both {
                 continue;
             }
-            search.matches(&self.loops[a as usize], &self.loops[b as usize], order, &mut |c| found.push(c))?;
+            search.matches(self.loops.get(a as usize), self.loops.get(b as usize), order, &mut |c| found.push(c))?;
         }
         Ok(())
     }

@@ -78,21 +78,18 @@ impl<'a> FaceSamples<'a> {
         histogram_correlation(&p, &q, self.options.bins)
     }
 
-    /// Whether the mirror maps face `a` onto face `b` (or `a` onto itself): areas, distances to the plane, surfaces both
-    /// ways, inner loops.
-    pub fn mirrored(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> bool {
+    /// The correlation of eq. (6) as above; and whether the mirror maps face `a` onto face `b` (or `a` onto itself):
+    /// areas, inner loops, distances to the plane, surfaces both ways.
+    pub fn compared(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> (Option<f64>, bool) {
+        let (mut s, mut t) = self.both_distances(a, b, plane);
+        let correlation = histogram_correlation(&s, &t, self.options.bins);
         let (p, q) = (&self.outlines[a as usize], &self.outlines[b as usize]);
-        let areas = (p.area - q.area).abs() <= self.options.area * p.area.max(q.area);
-        if !areas || !self.inner_loops_match(p, q, plane) {
-            return false;
-        }
-        if a != b {
-            let (mut s, mut t) = self.both_distances(a, b, plane);
-            if wasserstein(&mut s, &mut t) > self.options.wasserstein * self.size {
-                return false;
-            }
-        }
-        self.lies_on(a, b, plane, field) && (a == b || self.lies_on(b, a, plane, field))
+        let mirrored = (p.area - q.area).abs() <= self.options.area * p.area.max(q.area)
+            && self.inner_loops_match(p, q, plane)
+            && (a == b || wasserstein(&mut s, &mut t) <= self.options.wasserstein * self.size)
+            && self.lies_on(a, b, plane, field)
+            && (a == b || self.lies_on(b, a, plane, field));
+        (correlation, mirrored)
     }
 
     /// Whether areas and inner loops agree and the samples of `a` are mirrored onto `b`: one way only, for faces whose

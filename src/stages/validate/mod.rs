@@ -283,8 +283,9 @@ fn check(
     let mut correlations = Vec::new();
     let mut passes = |pair: &u32| {
         let [a, b] = matches.pairs[*pair as usize].faces;
-        correlations.extend(samples.correlation(a, b, &group.plane));
-        samples.mirrored(a, b, &group.plane, field)
+        let (correlation, mirrored) = samples.compared(a, b, &group.plane, field);
+        correlations.extend(correlation);
+        mirrored
     };
     let pairs: Vec<_> = group.pairs.into_iter().filter(|pair| passes(pair)).collect();
     let mean = correlations.iter().sum::<f64>() / correlations.len() as f64;
