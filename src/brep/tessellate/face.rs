@@ -18,13 +18,15 @@ const RIM_SEGMENTS: usize = 24;
 
 /// Triangles whose area is off by more than this share are made again, finer and without short cuts.
 const AREA_OFF: f64 = 0.015;
-/// Faces smaller than this share of the square of the model's size are not made again.
-const UNSEEN: f64 = 1e-6;
+/// Errors smaller than this share of the square of the model's size, a pixel of a silhouette of 512, are not seen.
+const UNSEEN: f64 = 4e-6;
 /// How often a face is made again at most, and the least share of the deflection each time.
-const REFINEMENTS: usize = 2;
+const REFINEMENTS: usize = 4;
 const FINER: f64 = 0.25;
-/// What is aimed for when a face is made again for the first time, as a share of the error that is taken.
+/// What is aimed for when a face is made again, as a share of the error that is taken.
 const AIM: f64 = 0.75;
+/// More triangles that leave more than this share of the error do not help: the edges are too coarse.
+const HELPS: f64 = 0.9;
 
 /// What all faces of a model need.
 pub(super) struct Context<'a> {
@@ -93,17 +95,19 @@ fn trimmed(
     }
     let mut fineness = context.fineness;
     let mut off = error(&best, context);
-    for round in 0..REFINEMENTS {
+    for _ in 0..REFINEMENTS {
         if off <= 1.0 {
             break;
         }
         // Errors shrink as the deflection does, unless the edges are too coarse.
-        let share = if round == 0 { (AIM / off).max(FINER) } else { FINER };
+        let share = (AIM / off).max(FINER);
         fineness = Fineness { deflection: share * fineness.deflection, angle: share.sqrt() * fineness.angle };
         let Ok(finer) = patch(chart, &mut paths, &fineness, false, reference) else { break };
         let finer_off = error(&finer, context);
-        if finer_off < off {
+        if finer_off <= (HELPS * off).max(1.0) {
             (best, off) = (finer, finer_off);
+        } else if finer.triangles.len() > best.triangles.len() {
+            break;
         }
     }
     Ok(best)
