@@ -38,11 +38,8 @@ impl Raster {
     pub fn project(&self, mesh: &Mesh, axis: &Vector) -> Coordinates {
         let (middle, end) = (0.5 * self.side as f64, self.side as f64);
         let along = |p: &Point| (middle + self.scale * axis.dot(&(p - self.centre))).clamp(0.0, end);
-        let (mut exact, mut cells) = (vec![0.0; mesh.points.len()], vec![0; mesh.points.len()]);
-        for ((exact, cell), p) in exact.iter_mut().zip(&mut cells).zip(&mesh.points) {
-            *exact = along(p);
-            *cell = (*exact as u16).min(self.side as u16 - 1);
-        }
+        let exact: Vec<_> = mesh.points.iter().map(along).collect();
+        let cells: Vec<_> = exact.iter().map(|&c| (c as u16).min(self.side as u16 - 1)).collect();
         let points = |face: &MeshFace| face.points.start as usize..face.points.end as usize;
         let faces = mesh.faces.iter().map(|face| bounds(&cells[points(face)])).collect();
         Coordinates { exact, cells, faces }

@@ -106,14 +106,26 @@ impl Cut {
         }
         let [a, b, c] = ascending(corners, |corner| corner.height);
         let (left, right) = (less(less(a.x, b.x), c.x), more(more(a.x, b.x), c.x));
-        let (long, below, above) = (Side::up(&a, &c), Side::up(&a, &b), Side::up(&b, &c));
-        for (slice, shadow) in (a.level..c.level).zip(&mut self.shadows[a.level as usize..c.level as usize]) {
+        let crossed = &self.shadows[a.level as usize..c.level as usize];
+        let Some(held) = crossed.iter().position(|shadow| !shadow.holds(left, right)) else { return };
+        let (start, long) = (a.level + held as u32, Side::up(&a, &c));
+        if start < b.level {
+            self.cast_between([&long, &Side::up(&a, &b)], start..b.level, [left, right]);
+        }
+        if b.level < c.level {
+            self.cast_between([&long, &Side::up(&b, &c)], start.max(b.level)..c.level, [left, right]);
+        }
+    }
+
+    /// Adds what lies between two sides of a triangle that reaches from `left` to `right`.
+    fn cast_between(&mut self, [long, short]: [&Side; 2], slices: Range<u32>, [left, right]: [f64; 2]) {
+        let shadows = &mut self.shadows[slices.start as usize..slices.end as usize];
+        for (slice, shadow) in slices.zip(shadows) {
             if shadow.holds(left, right) {
                 continue;
             }
             let height = self.low + (f64::from(slice) + 0.5) * self.thickness;
-            let p = long.at(height);
-            let q = if slice < b.level { below.at(height) } else { above.at(height) };
+            let (p, q) = (long.at(height), short.at(height));
             shadow.add(less(p, q), more(p, q));
         }
     }

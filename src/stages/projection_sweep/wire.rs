@@ -227,7 +227,7 @@ pub(super) fn group<T: Clone + Default>(things: &[(u32, T)], count: usize, sorte
 
 /// One vertex for all points with the same coordinates, and the vertex of each point.
 fn weld(mesh: &Mesh, vertex: impl Fn(&Point) -> WireVertex) -> (Vec<WireVertex>, Vec<u32>) {
-    let mut known = FxHashMap::with_capacity_and_hasher(mesh.points.len(), Default::default());
+    let mut known = FxHashMap::with_capacity_and_hasher(mesh.points.len() / 2, Default::default());
     let mut vertices = Vec::with_capacity(mesh.points.len());
     let mut id = |p: &Point| {
         let plus_zero: Vector = p.coords.map(|c| c + 0.0); // -0 and 0 are the same place
