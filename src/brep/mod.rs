@@ -10,6 +10,7 @@ pub mod nurbs;
 mod project;
 pub mod sample;
 pub mod simplify;
+mod starts;
 pub mod surface;
 pub mod tessellate;
 pub mod topology;

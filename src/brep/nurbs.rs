@@ -3,6 +3,8 @@
 //! Method: the recurrence of de Boor and Cox for the basis functions; derivatives from the basis functions one and
 //! two degrees lower; the quotient rule for rational ones (Piegl and Tiller, The NURBS Book, chapters 2 to 4).
 
+use std::ops::RangeInclusive;
+
 use super::surface::Jet;
 use crate::geometry::{Point, Vector};
 
@@ -64,22 +66,25 @@ macro_rules! for_degree {
 }
 
 impl<const N: usize> Basis<N> {
-    /// At `t`, clamped to the domain, with derivatives up to `ORDER`. Needs `degree < N` and `count + degree + 1` knots.
-    fn at<const ORDER: usize>(knots: &[f64], degree: usize, count: usize, t: f64) -> Self {
+    /// For any place.
+    const NOWHERE: Self = Self { first: 0, values: [[0.0; N]; 3] };
+
+    /// Moves them to `t`, clamped to the domain, with derivatives up to `ORDER`. Needs `degree < N` and
+    /// `count + degree + 1` knots. In place: a table is too large to be handed on for each point.
+    fn go_to<const ORDER: usize>(&mut self, knots: &[f64], degree: usize, count: usize, t: f64) {
         let t = t.clamp(knots[degree], knots[count].max(knots[degree]));
         let inner = &knots[degree + 1..count];
         let span = degree + inner.partition_point(|&k| k <= t);
         let span = last_filled_span(knots, degree, span);
         let support = &knots[span + 1 - degree..=span + degree];
-        let mut basis = Self { first: span - degree, values: [[0.0; N]; 3] };
+        self.first = span - degree;
         // For the degrees of most splines the compiler writes the loops out.
         match degree {
-            1 => basis.fill::<ORDER>(support, 1, t),
-            2 => basis.fill::<ORDER>(support, 2, t),
-            3 => basis.fill::<ORDER>(support, 3, t),
-            _ => basis.fill::<ORDER>(support, degree, t),
+            1 => self.fill::<ORDER>(support, 1, t),
+            2 => self.fill::<ORDER>(support, 2, t),
+            3 => self.fill::<ORDER>(support, 3, t),
+            _ => self.fill::<ORDER>(support, degree, t),
         }
-        basis
     }
 
     /// From the knots at which functions begin or end, as many on either side of `t` as the degree.
@@ -146,6 +151,30 @@ impl Weighted {
     }
 }
 
+impl<const N: usize> Basis<N> {
+    /// The sums of the control points at these places, value and derivatives up to `ORDER`; without weights all are 1.
+    #[inline(always)]
+    fn sums<const ORDER: usize>(
+        &self,
+        points: &[Point],
+        weights: &[f64],
+        places: RangeInclusive<usize>,
+    ) -> [Weighted; 3] {
+        let mut sums = [Weighted::ZERO; 3];
+        let mut add = |j: usize, weighted: Weighted| {
+            for (sum, values) in sums.iter_mut().zip(&self.values).take(ORDER + 1) {
+                sum.add(values[j], &weighted);
+            }
+        };
+        let points = points[places.clone()].iter().enumerate();
+        match weights.get(places) {
+            Some(weights) => points.zip(weights).for_each(|((j, p), w)| add(j, Weighted(p.coords * *w, *w))),
+            None => points.for_each(|(j, p)| add(j, Weighted(p.coords, 1.0))),
+        }
+        sums
+    }
+}
+
 /// Quotient rule: the point and two derivatives in one direction.
 fn divide(a: &Weighted, d: &Weighted, dd: &Weighted) -> [Vector; 3] {
     let w = 1.0 / a.1;
@@ -181,17 +210,16 @@ impl NurbsCurve {
 
     /// For degrees below `N`.
     fn derivatives_below<const N: usize, const ORDER: usize>(&self, t: f64) -> [Vector; 3] {
-        let basis = Basis::<N>::at::<ORDER>(&self.knots, self.degree, self.points.len(), t);
-        let mut sums = [Weighted::ZERO; 3];
-        for j in 0..=self.degree {
-            let i = basis.first + j;
-            let w = self.weights.get(i).copied().unwrap_or(1.0);
-            let weighted = Weighted(self.points[i].coords * w, w);
-            for (sum, values) in sums.iter_mut().zip(&basis.values).take(ORDER + 1) {
-                sum.add(values[j], &weighted);
-            }
-        }
+        let mut basis = Basis::<N>::NOWHERE;
+        basis.go_to::<ORDER>(&self.knots, self.degree, self.points.len(), t);
+        let sums = basis.sums::<ORDER>(&self.points, &self.weights, basis.first..=basis.first + self.degree);
         divide(&sums[0], &sums[1], &sums[2])
+    }
+
+    /// The control points of one piece between breaks after the other: it lies in their hull, as weights are positive.
+    pub(super) fn pieces(&self) -> impl Iterator<Item = &[Point]> {
+        let filled = (self.degree..self.points.len()).filter(|&i| self.knots[i + 1] > self.knots[i]);
+        filled.map(|i| &self.points[i - self.degree..=i])
     }
 
     /// The knots inside the domain, ends included, each once.
@@ -224,8 +252,9 @@ impl NurbsSurface {
 
     /// For degrees below `N`.
     fn jet_below<const N: usize, const ORDER: usize>(&self, u: f64, v: f64) -> Jet {
-        let bu = Basis::<N>::at::<ORDER>(&self.knots_u, self.degree_u, self.rows(), u);
-        let bv = Basis::<N>::at::<ORDER>(&self.knots_v, self.degree_v, self.columns, v);
+        let [mut bu, mut bv] = [Basis::<N>::NOWHERE; 2];
+        bu.go_to::<ORDER>(&self.knots_u, self.degree_u, self.rows(), u);
+        bv.go_to::<ORDER>(&self.knots_v, self.degree_v, self.columns, v);
         // a: value, u, uu, v, uv, vv
         let mut a = [Weighted::ZERO; 6];
         for i in 0..=self.degree_u {
@@ -254,16 +283,8 @@ impl NurbsSurface {
 
     /// The sums along v of one row of control points: value, first, second derivative.
     fn row_sums<const N: usize, const ORDER: usize>(&self, basis: &Basis<N>, row: usize) -> [Weighted; 3] {
-        let mut sums = [Weighted::ZERO; 3];
-        for j in 0..=self.degree_v {
-            let index = row * self.columns + basis.first + j;
-            let w = self.weights.get(index).copied().unwrap_or(1.0);
-            let weighted = Weighted(self.points[index].coords * w, w);
-            for (sum, values) in sums.iter_mut().zip(&basis.values).take(ORDER + 1) {
-                sum.add(values[j], &weighted);
-            }
-        }
-        sums
+        let first = row * self.columns + basis.first;
+        basis.sums::<ORDER>(&self.points, &self.weights, first..=first + self.degree_v)
     }
 
     /// The number of non-empty knot spans along u and v.

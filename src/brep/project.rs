@@ -1,7 +1,8 @@
 //! The point of a curve or surface nearest to a given point: Newton's method from a hint or from the best of a few
 //! samples.
 
-use super::surface::Surface;
+use super::starts::{Samples, anywhere, best_by, least_distance};
+use super::surface::{Jet, Surface};
 use super::{Curve, Placement};
 use crate::geometry::{Point, Vector};
 
@@ -9,12 +10,8 @@ use crate::geometry::{Point, Vector};
 const STEPS: usize = 30;
 /// A step this small, as a share of the parameter range, ends the iteration.
 const SMALL_STEP: f64 = 1e-12;
-/// Samples in each knot span when there is no hint.
-const SAMPLES: usize = 12;
 /// Lines and points this near to a plane, as a sine or a share of the size, lie in it.
 const COPLANAR: f64 = 1e-9;
-/// Nodes of the grid that finds a start when there is no hint.
-const MAX_NODES: usize = 16_384;
 
 /// A parameter interval, closed in itself where the period is given.
 struct Range {
@@ -47,7 +44,13 @@ pub(super) fn closest_parameter(curve: &Curve, p: &Point, hint: Option<f64>) -> 
         let [q, d, dd] = curve.derivatives(t);
         [q - p.coords, d, dd]
     };
-    closest_by(curve, hint, error, |t| curve.point(t) - p)
+    let off = |t| curve.point(t) - p;
+    match curve {
+        Curve::Nurbs(nurbs) => {
+            closest_by(curve, hint, error, off, nurbs.pieces().map(|points| least_distance(points, p)))
+        }
+        _ => closest_by(curve, hint, error, off, anywhere()),
+    }
 }
 
 /// The parameters of the point of `surface` nearest to `p`, for surfaces without a closed form; `periods` are its own.
@@ -69,94 +72,48 @@ pub(super) fn closest_on_surface(
     newton_on_surface(surface, &ranges, p, start)
 }
 
-/// A surface sampled on a grid over its domain (clipped to something finite), finer where there are many knot spans.
-#[derive(Clone, Debug)]
-pub(super) struct Samples {
-    columns: usize,
-    nodes: Vec<([f64; 2], Point)>,
-}
-
-impl Samples {
-    pub fn of(surface: &Surface) -> Self {
-        let [u0, u1, v0, v1] = surface.domain().map(|a| a.clamp(-1e6, 1e6));
-        let mut cells = match surface {
-            Surface::Nurbs(nurbs) => nurbs.spans().map(|n| (3 * n + 1).max(6)),
-            _ => [24, 24],
-        };
-        while (cells[0] + 1) * (cells[1] + 1) > MAX_NODES {
-            let longer = usize::from(cells[1] > cells[0]);
-            cells[longer] = cells[longer].div_ceil(2);
-        }
-        let [nu, nv] = cells;
-        let [mut us, mut vs] = [(u0, u1, nu), (v0, v1, nv)]
-            .map(|(from, to, n)| (0..=n).map(|i| from + (to - from) * i as f64 / n as f64).collect::<Vec<_>>());
-        let size = (surface.point(u0, v0) - surface.point(0.5 * (u0 + u1), 0.5 * (v0 + v1))).norm();
-        leave_poles(&mut us, &vs, size, |u, v| surface.point(u, v));
-        leave_poles(&mut vs, &us, size, |v, u| surface.point(u, v));
-        let uv = us.iter().flat_map(|&u| vs.iter().map(move |&v| [u, v]));
-        Self { columns: nv + 1, nodes: uv.map(|uv| (uv, surface.point(uv[0], uv[1]))).collect() }
-    }
-
-    /// The parameters of at most `count` samples that are nearer to `p` than the samples around them, nearest first.
-    pub fn nearest(&self, p: &Point, count: usize) -> Vec<[f64; 2]> {
-        let distances: Vec<f64> = self.nodes.iter().map(|(_, q)| (q - p).norm_squared()).collect();
-        let (n, columns) = (distances.len(), self.columns);
-        let lowest = |&i: &usize| {
-            let d = distances[i];
-            (i % columns == 0 || d <= distances[i - 1])
-                && (i % columns + 1 == columns || d <= distances[i + 1])
-                && (i < columns || d <= distances[i - columns])
-                && (i + columns >= n || d <= distances[i + columns])
-        };
-        let mut minima: Vec<usize> = (0..n).filter(lowest).collect();
-        minima.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
-        minima.truncate(count);
-        minima.into_iter().map(|i| self.nodes[i].0).collect()
-    }
-}
-
-/// Moves the first and the last line off a side that has shrunk to a point: there the surface does not move with the
-/// other parameter, and an iteration that starts with a wrong one stays.
-fn leave_poles(lines: &mut [f64], across: &[f64], size: f64, at: impl Fn(f64, f64) -> Point) {
-    let shrunk = |line: f64| across.iter().all(|&t| (at(line, t) - at(line, across[0])).norm() <= 1e-6 * size);
-    let n = lines.len();
-    for (side, next) in [(0, 1), (n - 1, n - 2)] {
-        if shrunk(lines[side]) {
-            lines[side] += 0.25 * (lines[next] - lines[side]);
-        }
-    }
-}
-
-/// Minimises |S(u, v) - p|^2 by Newton's method, with the Gauss-Newton matrix where the full one is not positive.
+/// Minimises |S(u, v) - p|^2 by Newton's method.
 fn newton_on_surface(surface: &Surface, ranges: &[Range; 2], p: &Point, hint: [f64; 2]) -> Option<[f64; 2]> {
     let mut uv = [ranges[0].hold(hint[0]), ranges[1].hold(hint[1])];
     let mut jet = surface.jet(uv[0], uv[1]);
     for _ in 0..STEPS {
         let r = jet.point - p;
-        let gradient = [r.dot(&jet.du), r.dot(&jet.dv)];
-        let gauss = [jet.du.norm_squared(), jet.du.dot(&jet.dv), jet.dv.norm_squared()];
-        let full = [gauss[0] + r.dot(&jet.duu), gauss[1] + r.dot(&jet.duv), gauss[2] + r.dot(&jet.dvv)];
-        let floor = 0.01 * gauss[0] * gauss[2];
-        let positive = full[0] > 0.0 && full[0] * full[2] - full[1] * full[1] > floor;
-        let mut step = solve(if positive { full } else { gauss }, gradient);
-        step = keep_inside(&uv, step, ranges, &gauss, &gradient);
-        let mut next = [ranges[0].hold(uv[0] + step[0]), ranges[1].hold(uv[1] + step[1])];
-        let mut value = surface.jet(next[0], next[1]);
+        let mut step = newton_step(&jet, &r, &uv, ranges);
+        // The place a step leads to, and whether it is the last one, behind which no derivatives are asked for.
+        let reached = |step: [f64; 2]| {
+            let next = [0, 1].map(|i| ranges[i].hold(uv[i] + step[i]));
+            let [u, v] = [0, 1].map(|i| (next[i] - uv[i]).abs() / ranges[i].width());
+            let moved = u.max(v);
+            (next, !moved.is_finite() || moved <= SMALL_STEP)
+        };
+        let at = |([u, v], last): ([f64; 2], bool)| if last { Jet::at(surface.point(u, v)) } else { surface.jet(u, v) };
+        let mut next = reached(step);
+        let mut value = at(next);
         for _ in 0..8 {
             if (value.point - p).norm_squared() <= r.norm_squared() {
                 break;
             }
             step = [0.5 * step[0], 0.5 * step[1]];
-            next = [ranges[0].hold(uv[0] + step[0]), ranges[1].hold(uv[1] + step[1])];
-            value = surface.jet(next[0], next[1]);
+            next = reached(step);
+            value = at(next);
         }
-        let moved = ((next[0] - uv[0]).abs() / ranges[0].width()).max((next[1] - uv[1]).abs() / ranges[1].width());
-        (uv, jet) = (next, value);
-        if !moved.is_finite() || moved <= SMALL_STEP {
+        (uv, jet) = (next.0, value);
+        if next.1 {
             break;
         }
     }
     (uv[0].is_finite() && uv[1].is_finite()).then_some(uv)
+}
+
+/// The next step, with the Gauss-Newton matrix where the full one is not positive.
+fn newton_step(jet: &Jet, r: &Vector, uv: &[f64; 2], ranges: &[Range; 2]) -> [f64; 2] {
+    let gradient = [r.dot(&jet.du), r.dot(&jet.dv)];
+    let gauss = [jet.du.norm_squared(), jet.du.dot(&jet.dv), jet.dv.norm_squared()];
+    let full = [gauss[0] + r.dot(&jet.duu), gauss[1] + r.dot(&jet.duv), gauss[2] + r.dot(&jet.dvv)];
+    let floor = 0.01 * gauss[0] * gauss[2];
+    let positive = full[0] > 0.0 && full[0] * full[2] - full[1] * full[1] > floor;
+    let step = solve(if positive { full } else { gauss }, gradient);
+    keep_inside(uv, step, ranges, &gauss, &gradient)
 }
 
 /// Where a step would leave the domain through a side, only the other parameter moves.
@@ -198,7 +155,8 @@ fn project_extrusion(profile: &Curve, direction: &Vector, p: &Point, hint: Optio
         let [q, d, dd] = profile.derivatives(t);
         [flat(q) - target, flat(d), flat(dd)]
     };
-    let u = closest_by(profile, hint.map(|h| h[0]), error, |t| flat(profile.point(t).coords) - target);
+    let off = |t| flat(profile.point(t).coords) - target;
+    let u = closest_by(profile, hint.map(|h| h[0]), error, off, anywhere());
     let v = (p.coords - profile.derivatives(u)[0]).dot(&axis) / direction.norm();
     Some([u, v])
 }
@@ -225,7 +183,7 @@ pub(super) fn project_revolution(
         let rdd = (d.x * d.x + d.y * d.y + c.x * dd.x + c.y * dd.y - rd * rd) / r;
         [Vector::new(r - rho, 0.0, c.z - q.z), Vector::new(rd, 0.0, d.z), Vector::new(rdd, 0.0, dd.z)]
     };
-    let v = closest_by(profile, hint.map(|h| h[1]), error, |t| error(t)[0]);
+    let v = closest_by(profile, hint.map(|h| h[1]), error, |t| error(t)[0], anywhere());
     let at = local(&(profile.derivatives(v)[0] - axis.origin.coords));
     Some([q.y.atan2(q.x) - at.y.atan2(at.x), v])
 }
@@ -268,19 +226,21 @@ fn project_turned_circle(profile: &Curve, axis: &Placement, out: &Vector, q: &Ve
 }
 
 /// The parameter of a curve that makes the vector `off(t)` shortest; `error` gives two derivatives as well.
-/// A step that makes it longer is halved; where the second-order term would turn the step round it is left out.
+/// A step that makes it longer is halved; where the second-order term would turn the step round it is left out. `least`:
+/// for each piece between breaks a square of the length that none is shorter than.
 fn closest_by(
     curve: &Curve,
     hint: Option<f64>,
     error: impl Fn(f64) -> [Vector; 3],
     off: impl Fn(f64) -> Vector,
+    least: impl Iterator<Item = f64>,
 ) -> f64 {
     let [a, b] = curve.domain();
     let range = Range::new(a, b, curve.period());
     let size = |t: f64| off(t).norm_squared();
     let mut t = match hint {
         Some(hint) => range.hold(hint),
-        None if (b - a).is_finite() => best_by(curve, &size),
+        None if (b - a).is_finite() => best_by(curve, &size, least),
         None => 0.0,
     };
     let mut jet = error(t);
@@ -306,22 +266,6 @@ fn closest_by(
         }
     }
     t
-}
-
-fn best_by(curve: &Curve, size: &impl Fn(f64) -> f64) -> f64 {
-    let breaks = curve.breaks();
-    let samples = breaks.windows(2).flat_map(|pair| {
-        let (from, width) = (pair[0], pair[1] - pair[0]);
-        (0..=SAMPLES).map(move |i| from + width * i as f64 / (SAMPLES) as f64)
-    });
-    let mut best = (f64::INFINITY, breaks.first().copied().unwrap_or(0.0));
-    for t in samples {
-        let value = size(t);
-        if value < best.0 {
-            best = (value, t);
-        }
-    }
-    best.1
 }
 
 #[cfg(test)]

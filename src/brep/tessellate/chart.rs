@@ -8,7 +8,7 @@ use super::boundary::Path;
 use super::edges::{Fineness, angular_step};
 use super::spindle::Part;
 use crate::brep::Surface;
-use crate::brep::project::Samples;
+use crate::brep::starts::Samples;
 use crate::brep::surface::Jet;
 use crate::cancel::Cancel;
 use crate::geometry::Point;
