@@ -1,5 +1,7 @@
 //! Area-uniform samples of the faces of a mesh.
 
+use std::ops::Range;
+
 use super::mesh::{Mesh, PlacedFaceId};
 use crate::geometry::{Point, Vector};
 
@@ -18,20 +20,26 @@ pub struct Sample {
 /// remainder and low-discrepancy points inside, so that the same mesh gives the same samples. To others of which there
 /// are `before` these are new ones.
 pub fn sample_mesh(mesh: &Mesh, count: usize, before: usize) -> Vec<Sample> {
-    let total: f64 = (0..mesh.triangles.len()).map(|t| mesh.doubled_normal(t).norm()).sum();
-    let ids = (0..mesh.faces.len()).map(|i| PlacedFaceId(i as u32));
-    let mut spread = Spread { before, ..Spread::new(total / count.max(1) as f64) };
+    let areas = doubled_areas(mesh, 0..mesh.triangles.len());
+    let mut spread = Spread { before, ..Spread::new(&areas, count) };
     spread.samples.reserve(count + 1);
-    ids.for_each(|id| spread.add_face(mesh, id));
+    for id in (0..mesh.faces.len()).map(|i| PlacedFaceId(i as u32)) {
+        spread.add_face(mesh, id, &areas[mesh.triangles_of(id)]);
+    }
     spread.samples
 }
 
 /// About `count` samples of one face, spread evenly over its area.
 pub fn sample_face(mesh: &Mesh, id: PlacedFaceId, count: usize) -> Vec<Sample> {
-    let total: f64 = mesh.triangles_of(id).map(|t| mesh.doubled_normal(t).norm()).sum();
-    let mut spread = Spread::new(total / count.max(1) as f64);
-    spread.add_face(mesh, id);
+    let areas = doubled_areas(mesh, mesh.triangles_of(id));
+    let mut spread = Spread::new(&areas, count);
+    spread.add_face(mesh, id, &areas);
     spread.samples
+}
+
+/// Twice the areas of some triangles.
+fn doubled_areas(mesh: &Mesh, triangles: Range<usize>) -> Vec<f64> {
+    triangles.map(|t| mesh.doubled_normal(t).norm()).collect()
 }
 
 /// Deals samples out to triangles, one for every `step` of doubled area.
@@ -44,36 +52,46 @@ struct Spread {
 }
 
 impl Spread {
-    fn new(step: f64) -> Self {
+    /// About `count` samples for triangles of these doubled areas.
+    fn new(areas: &[f64], count: usize) -> Self {
+        let step = areas.iter().sum::<f64>() / count.max(1) as f64;
         Self { step, owed: 0.5, before: 0, samples: Vec::new() }
     }
 
-    fn add_face(&mut self, mesh: &Mesh, id: PlacedFaceId) {
-        for t in mesh.triangles_of(id) {
-            let doubled = mesh.doubled_normal(t);
-            let area = doubled.norm();
+    /// `areas`: the doubled ones of the face's triangles.
+    fn add_face(&mut self, mesh: &Mesh, id: PlacedFaceId, areas: &[f64]) {
+        for (t, &area) in mesh.triangles_of(id).zip(areas) {
             if area <= 0.0 || !area.is_finite() {
                 continue;
             }
             self.owed += area / self.step;
-            let corners = mesh.corners(t);
-            while self.owed >= 1.0 {
-                self.owed -= 1.0;
-                let point = pick(&corners, self.before + self.samples.len());
-                self.samples.push(Sample { point, normal: doubled / area, face: id });
+            if self.owed >= 1.0 {
+                self.add_owed(mesh.corners(t), area, id);
             }
+        }
+    }
+
+    fn add_owed(&mut self, [a, b, c]: [Point; 3], area: f64, face: PlacedFaceId) {
+        let (ab, ac) = (b - a, c - a);
+        let normal = ab.cross(&ac) / area;
+        while self.owed >= 1.0 {
+            self.owed -= 1.0;
+            let [s, t] = pick(self.before + self.samples.len());
+            self.samples.push(Sample { point: a + ab * s + ac * t, normal, face });
         }
     }
 }
 
-/// The `index`-th point of the R2 low-discrepancy sequence (Roberts 2018), folded into the triangle.
-fn pick([a, b, c]: &[Point; 3], index: usize) -> Point {
+/// The `index`-th point of the R2 low-discrepancy sequence (Roberts 2018), folded into the triangle below s + t = 1.
+fn pick(index: usize) -> [f64; 2] {
     let i = index as f64 + 1.0;
-    let (mut s, mut t) = ((0.5 + i * 0.754_877_666_246_692_7).fract(), (0.5 + i * 0.569_840_290_998_053_3).fract());
-    if s + t > 1.0 {
-        (s, t) = (1.0 - s, 1.0 - t);
-    }
-    a + (b - a) * s + (c - a) * t
+    let [s, t] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_3].map(|step| fraction(0.5 + i * step));
+    if s + t > 1.0 { [1.0 - s, 1.0 - t] } else { [s, t] }
+}
+
+/// What `fract` says of a number that is neither negative nor huge, without the call of a function.
+fn fraction(x: f64) -> f64 {
+    x - (x as i64) as f64
 }
 
 #[cfg(test)]
