@@ -212,6 +212,12 @@ struct LocalOutline {
 }
 
 impl LocalOutlines {
+    /// None yet; most faces are outlines of their own, with four corners.
+    fn with_room_for(faces: usize) -> Self {
+        let (outlines, corners) = (Vec::with_capacity(faces), Vec::with_capacity(4 * faces));
+        Self { outlines, faces: Vec::with_capacity(faces), corners, inner: Vec::new() }
+    }
+
     /// One of the outlines in its occurrence; `None` where the mesh has none of its faces. Where several occurrences
     /// share it, `shared` names its body and its number there.
     fn placed(
@@ -291,7 +297,7 @@ impl<'a> Finder<'a> {
     fn new(parsed: &'a Parsed, options: &'a Options, cancel: &'a Cancel) -> Self {
         let model = &parsed.model;
         let tracer = Tracer::new(model, options.corner_angle_deg.to_radians());
-        let (faces, groups, found) = (Vec::new(), Groups::new(model), LocalOutlines::default());
+        let (faces, groups, found) = (Vec::new(), Groups::new(model), LocalOutlines::with_room_for(model.faces.len()));
         Self { parsed, options, cancel, faces, groups, tracer, found }
     }
 

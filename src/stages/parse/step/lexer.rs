@@ -74,8 +74,10 @@ pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
         let entry = entry(bytes, at);
         match statement_end(bytes, entry.map_or(at, |entry| behind_name(bytes, entry.start()))) {
             End::Semicolon(end) => {
-                table.entries.extend(entry);
-                ended = bytes[at] != b'#' && is_end(bytes, at, &mut table);
+                match entry {
+                    Some(entry) => table.entries.push(entry),
+                    None => ended = is_end(bytes, at, &mut table),
+                }
                 at = end + 1;
             }
             End::BrokenString(resume) => {

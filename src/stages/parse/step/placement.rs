@@ -78,12 +78,13 @@ impl<'a> Geometry<'a> {
     }
 
     fn triple(&self, id: u64, kind: Kind, otherwise: &'static str) -> Read<Vector> {
-        let record = self.file.record(id)?;
+        let entry = self.file.find(id)?;
+        if let Some(values) = self.file.plain_triple(entry, kind) {
+            return Ok(values);
+        }
+        let record = self.file.record_of(entry);
         if !record.is(kind) {
             return Err(record.fault(otherwise));
-        }
-        if let Some(values) = record.plain_triple() {
-            return Ok(values);
         }
         let inheritance = match kind {
             Kind::Direction => &[Kind::RepresentationItem, Kind::Direction],

@@ -38,14 +38,36 @@ impl<'a> File<'a> {
         entries.binary_search_by_key(&id, |e| e.id).ok()
     }
 
-    /// The record of an instance.
+    /// The table entry of an instance that is to be read.
     ///
     /// # Errors
     /// Where there is none, where the file was read too often already, and when cancelled.
-    pub fn record(&self, id: u64) -> Read<Record<'a>> {
+    pub fn find(&self, id: u64) -> Read<Entry> {
         self.table.effort.check(id)?;
-        let entry = self.entry(id).ok_or_else(|| Fault::new(id, "there is no such instance"))?;
-        Ok(self.record_of(entry))
+        self.entry(id).ok_or_else(|| Fault::new(id, "there is no such instance"))
+    }
+
+    /// The record of an instance.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn record(&self, id: u64) -> Read<Record<'a>> {
+        Ok(self.record_of(self.find(id)?))
+    }
+
+    /// The three numbers of an instance of this type without a name that has nothing else, written without spaces;
+    /// `None` says nothing.
+    pub fn plain_triple(&self, entry: Entry, kind: Kind) -> Option<Vector> {
+        let text = if entry.kind() == kind { &self.bytes[entry.start()..] } else { return None };
+        let mut rest = text.strip_prefix(b"('',(")?;
+        let mut values = [0.0_f64; 3];
+        for (value, end) in values.iter_mut().zip([b',', b',', b')']) {
+            let length;
+            (*value, length) = plain_real(rest)?;
+            rest = rest[length..].strip_prefix(&[end])?;
+        }
+        self.table.effort.spend(text.len() - rest.len());
+        Some(Vector::from(values))
     }
 
     /// The parts of a complex instance, each with the place of its parameters.
@@ -69,6 +91,18 @@ impl<'a> File<'a> {
     }
 }
 
+/// The finite number that a text starts with, and its length.
+fn plain_real(text: &[u8]) -> Option<(f64, usize)> {
+    // What most components of directions are.
+    match text {
+        [digit @ b'0'..=b'9', b'.', b',' | b')', ..] => return Some((f64::from(digit - b'0'), 2)),
+        [b'-', digit @ b'0'..=b'9', b'.', b',' | b')', ..] => return Some((-f64::from(digit - b'0'), 3)),
+        [b'-' | b'.' | b'0'..=b'9', ..] => {}
+        _ => return None,
+    }
+    fast_float2::parse_partial(text).ok().filter(|(value, _): &(f64, usize)| value.is_finite())
+}
+
 /// An instance: of one type, or of several (a complex instance) with the parameters of each.
 #[derive(Clone, Debug)]
 pub(super) struct Record<'a> {
@@ -89,7 +123,7 @@ impl<'a> Record<'a> {
 
     /// Whether the instance is, among others, of this very type.
     pub fn is(&self, kind: Kind) -> bool {
-        self.kinds().any(|k| k == kind)
+        if self.kind == Kind::Complex { self.parts.iter().any(|p| p.0 == kind) } else { self.kind == kind }
     }
 
     /// The parameters. Those of a complex instance are read part by part in the order of `inheritance`, which is the
@@ -100,21 +134,6 @@ impl<'a> Record<'a> {
         } else {
             Cursor::at(self.file, self.id, self.start)
         }
-    }
-
-    /// The three numbers of an instance without a name that has nothing else, written without spaces; `None` says nothing.
-    pub fn plain_triple(&self) -> Option<Vector> {
-        let text = &self.file.bytes[self.start..];
-        let mut rest = text.strip_prefix(b"('',(")?;
-        let mut values = [0.0_f64; 3];
-        for (value, end) in values.iter_mut().zip([b',', b',', b')']) {
-            let length;
-            (*value, length) = fast_float2::parse_partial(rest).ok()?;
-            let plain = value.is_finite() && matches!(rest[0], b'-' | b'.' | b'0'..=b'9');
-            rest = rest[length..].strip_prefix(&[end]).filter(|_| plain)?;
-        }
-        self.file.table.effort.spend(text.len() - rest.len());
-        Some(Vector::from(values))
     }
 
     /// The parameters of one part of a complex instance, or of a simple instance of this type.
