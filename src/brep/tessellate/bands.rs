@@ -2,11 +2,12 @@
 //! points, and strips of triangles between neighbouring rows. Most fillets, bent tubes and balls are nothing else, and
 //! need neither a cut nor a Delaunay triangulation.
 
+use super::Few;
 use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::edges::Fineness;
-use super::rings::{WIDEST, add_ring, level, sides, wall};
+use super::rings::{Chain, WIDEST, add_ring, add_wall, level, sides};
 
 /// How far a ring may waver, as a share of the distance to the next row.
 const LEVEL: f64 = 0.05;
@@ -16,9 +17,9 @@ const MOST_POINTS: usize = 20_000;
 const LEAST_COLUMNS: usize = 6;
 
 /// The band, where the paths bound one on the side that their direction tells and no seam contradicts.
-pub(super) fn band(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option<Patch> {
+pub(super) fn band(chart: &Chart, paths: &[Path], fineness: &Fineness, patch: &mut Patch) -> Option<()> {
     let along = (0..2).find(|&axis| paths.iter().any(|p| p.winding[axis] != 0))?;
-    let rings: Vec<Path> = paths.iter().map(|p| turned(p, along)).collect();
+    let rings: Few<Path> = paths.iter().map(|p| turned(p, along)).collect();
     let band = Band::of(chart, &rings, along)?;
     let steps = chart.steps(band.rectangle(along), fineness);
     let (columns, rows) = (steps[along].max(LEAST_COLUMNS), steps[1 - along]);
@@ -26,26 +27,26 @@ pub(super) fn band(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option
     if columns * rows > MOST_POINTS || rings.iter().any(|ring| waver(ring) > LEVEL * apart) {
         return None;
     }
-    let mut patch = Patch::default();
+    patch.clear();
     let [lower, upper] = [(band.lower, band.from), (band.upper, band.to)]
-        .map(|(ring, height)| ring.map(|ring| band.add_ring(&mut patch, ring, height)));
-    let places = band.columns(&patch, [&lower, &upper], columns);
+        .map(|(ring, height)| ring.map(|ring| band.add_ring(patch, ring, height)));
+    let places = band.columns(patch, [&lower, &upper], columns);
     if places.len() * rows > MOST_POINTS {
         return None;
     }
-    let mut below = lower.unwrap_or_else(|| add_row(&mut patch, chart, along, &places, band.from));
+    let mut below = lower.unwrap_or_else(|| add_row(patch, chart, along, &places, band.from));
     for row in 1..=rows {
         let above = match &upper {
             Some(upper) if row == rows => upper.clone(),
-            None if row == rows => add_row(&mut patch, chart, along, &places, band.to),
-            _ => add_row(&mut patch, chart, along, &places, band.from + apart * row as f64),
+            None if row == rows => add_row(patch, chart, along, &places, band.to),
+            _ => add_row(patch, chart, along, &places, band.from + apart * row as f64),
         };
-        patch.triangles.extend(wall(&patch.uv, &below, &above, f64::INFINITY)?);
+        add_wall(patch, &below, &above, f64::INFINITY)?;
         below = above;
     }
     patch.uv.iter_mut().for_each(|st| *st = back(*st, along));
     patch.sides = sides(&rings, band.lower);
-    Some(patch)
+    Some(())
 }
 
 /// The parameters as (s, t), s being the one along which the rings run, turned so that left stays left.
@@ -114,20 +115,20 @@ impl<'a> Band<'a> {
     }
 
     /// Adds a ring, moved by whole periods to the height where it is needed.
-    fn add_ring(&self, patch: &mut Patch, ring: &Path, height: f64) -> Vec<u32> {
+    fn add_ring(&self, patch: &mut Patch, ring: &Path, height: f64) -> Chain {
         let (chain, by) = (add_ring(patch, ring, self.period, self.start), height - level(ring));
         // Not at all, rather than by what rounding leaves.
         if by.abs() > 1e-6 {
-            chain.iter().for_each(|&i| patch.uv[i as usize][1] += by);
+            chain.clone().for_each(|i| patch.uv[i as usize][1] += by);
         }
         chain
     }
 
     /// Where the columns between the rings lie: at the points of the denser ring where these suffice.
-    fn columns(&self, patch: &Patch, rings: [&Option<Vec<u32>>; 2], least: usize) -> Vec<f64> {
+    fn columns(&self, patch: &Patch, rings: [&Option<Chain>; 2], least: usize) -> Vec<f64> {
         match rings.into_iter().flatten().max_by_key(|chain| chain.len()) {
             Some(chain) if suffices(patch, chain, WIDEST * self.period / least as f64) => {
-                chain.iter().map(|&i| patch.uv[i as usize][0]).collect()
+                chain.clone().map(|i| patch.uv[i as usize][0]).collect()
             }
             _ => (0..=least).map(|k| self.start + self.period * k as f64 / least as f64).collect(),
         }
@@ -135,13 +136,13 @@ impl<'a> Band<'a> {
 }
 
 /// Whether no two neighbours of a chain are farther apart than `widest`.
-fn suffices(patch: &Patch, chain: &[u32], widest: f64) -> bool {
-    let place = |i: u32| patch.uv[i as usize][0];
-    chain.windows(2).all(|pair| (place(pair[1]) - place(pair[0])).abs() <= widest)
+fn suffices(patch: &Patch, chain: &Chain, widest: f64) -> bool {
+    let points = &patch.uv[chain.start as usize..chain.end as usize];
+    points.windows(2).all(|pair| (pair[1][0] - pair[0][0]).abs() <= widest)
 }
 
 /// Adds a row of points, the first one repeated at the end.
-fn add_row(patch: &mut Patch, chart: &Chart, along: usize, places: &[f64], t: f64) -> Vec<u32> {
+fn add_row(patch: &mut Patch, chart: &Chart, along: usize, places: &[f64], t: f64) -> Chain {
     let from = patch.uv.len();
     for &s in places {
         patch.uv.push([s, t]);
@@ -149,7 +150,7 @@ fn add_row(patch: &mut Patch, chart: &Chart, along: usize, places: &[f64], t: f6
     }
     let last = patch.points.len() - 1;
     patch.points[last] = patch.points[from];
-    (from as u32..=last as u32).collect()
+    from as u32..last as u32 + 1
 }
 
 #[cfg(test)]
@@ -177,13 +178,15 @@ mod tests {
     }
 
     fn area(chart: &Chart, paths: &[Path]) -> Option<f64> {
-        let patch = band(chart, paths, &FINENESS)?;
-        Some(integrate(chart, &patch, paths, &Point::origin()).area)
+        let mut patch = Patch::default();
+        band(chart, paths, &FINENESS, &mut patch)?;
+        Some(integrate(chart, &patch, paths, &Point::origin(), &mut Vec::new()).area)
     }
 
     #[test]
     fn a_band_lies_on_the_left_of_its_lower_ring() {
         let surface = Surface::Torus { placement: axes(), major: 3.0, minor: 1.0 };
+        let inner = [surface.point(0.0, PI)];
         let mut chart = Chart::new(&surface, true, &[], 1.0);
         let rings = |forward: bool| [ring(&chart, 0.0, forward), ring(&chart, FRAC_PI_2, !forward)];
         // The integral of 3 + cos v over a quarter of the tube, and over the other three.
@@ -191,7 +194,7 @@ mod tests {
         let (short, long) = (rings(true), rings(false));
         assert!((area(&chart, &short).unwrap() / quarter - 1.0).abs() < 1e-4);
         assert!((area(&chart, &long).unwrap() / rest - 1.0).abs() < 1e-4);
-        chart.settle(&short, vec![chart.point([0.0, PI])]);
+        chart.settle(&short, &inner);
         assert!(area(&chart, &short).is_none(), "the seam lies on the other side");
         assert!(area(&chart, &long).is_some());
     }
@@ -217,7 +220,8 @@ mod tests {
         for (forward, same_sense) in [(true, true), (false, false)] {
             let chart = Chart::new(&surface, same_sense, &[], 1.0);
             let paths = [ring(&chart, 0.0, forward)];
-            let patch = band(&chart, &paths, &FINENESS).unwrap();
+            let mut patch = Patch::default();
+            band(&chart, &paths, &FINENESS, &mut patch).unwrap();
             assert!(patch.points.iter().all(|p| p.z > -1e-12), "the upper half lies on the left");
             assert!((area(&chart, &paths).unwrap() / (8.0 * PI) - 1.0).abs() < 1e-4);
         }
@@ -229,6 +233,6 @@ mod tests {
         let chart = Chart::new(&surface, true, &[], 1.0);
         let mut wavering = ring(&chart, 0.0, true);
         wavering.uv[3][1] += 0.1;
-        assert!(band(&chart, &[wavering], &FINENESS).is_none());
+        assert!(band(&chart, &[wavering], &FINENESS, &mut Patch::default()).is_none());
     }
 }

@@ -37,7 +37,7 @@ pub(super) struct Chart<'a> {
     pub poles: [bool; 4],
     samples: OnceCell<Samples>,
     /// Points in space that lie on the face, away from its border.
-    inner: Vec<Point>,
+    inner: &'a [Point],
     /// Which part of a torus that cuts itself.
     part: Option<Part>,
     /// Stops the long loops over one face; the caller asks again, whatever they found.
@@ -45,8 +45,8 @@ pub(super) struct Chart<'a> {
 }
 
 impl<'a> Chart<'a> {
-    /// For the surface of a face; `border`: its loops with their middles, which the poles of a sphere are kept away from.
-    pub fn new(surface: &'a Surface, same_sense: bool, border: &[[Vec<Point>; 2]], size: f64) -> Self {
+    /// For the surface of a face; `border`: points of its loops, which the poles of a sphere are kept away from.
+    pub fn new(surface: &'a Surface, same_sense: bool, border: &[Point], size: f64) -> Self {
         let surface = match surface {
             Surface::Rectangular { basis, .. } => Cow::Borrowed(&**basis),
             other => Cow::Borrowed(other),
@@ -65,7 +65,7 @@ impl<'a> Chart<'a> {
         let (domain, periods) = (surface.domain(), surface.periods());
         let wraps = !matches!(*surface, Surface::Plane(_) | Surface::Cylinder { .. } | Surface::Cone { .. })
             && !matches!(*surface, Surface::Sphere { .. } | Surface::Torus { .. });
-        let (flipped, poles, samples, inner) = (!same_sense, [false; 4], OnceCell::new(), Vec::new());
+        let (flipped, poles, samples, inner) = (!same_sense, [false; 4], OnceCell::new(), [].as_slice());
         let (part, cancel) = (None, None);
         let mut chart = Self { surface, domain, periods, flipped, wraps, poles, samples, inner, part, cancel };
         chart.poles = chart.find_poles(size);
@@ -132,7 +132,7 @@ impl<'a> Chart<'a> {
     }
 
     /// Bounds a torus that cuts itself to the part where the border is: a surface with two poles.
-    fn spindle(&mut self, border: &[[Vec<Point>; 2]]) {
+    fn spindle(&mut self, border: &[Point]) {
         self.part = Part::of(&self.surface, border);
         if let Some(part) = &self.part {
             [self.domain[2], self.domain[3]] = part.range();
@@ -142,7 +142,7 @@ impl<'a> Chart<'a> {
     }
 
     /// Notes points of the face's inside and bounds a cone at its apex, on the side where the paths are.
-    pub fn settle(&mut self, paths: &[Path], inner: Vec<Point>) {
+    pub fn settle(&mut self, paths: &[Path], inner: &'a [Point]) {
         self.inner = inner;
         let Surface::Cone { radius, half_angle, .. } = &*self.surface else { return };
         let apex = -radius / half_angle.tan();
@@ -311,7 +311,7 @@ mod tests {
         let surface = Surface::Cone { placement: axes(), radius: 1.0, half_angle: FRAC_PI_4 };
         for (v, side) in [(2.0, 2), (-3.0, 3)] {
             let mut chart = Chart::new(&surface, true, &[], 1.0);
-            chart.settle(&[Path { uv: vec![[0.0, v]], ..Path::default() }], Vec::new());
+            chart.settle(&[Path { uv: vec![[0.0, v]], ..Path::default() }], &[]);
             assert!(chart.poles[side] && (chart.domain[side] + 1.0).abs() < 1e-12);
             assert!(!chart.poles[5 - side]);
         }

@@ -9,13 +9,13 @@ use super::columns::Columns;
 use super::edges::Fineness;
 use super::interior::Grid;
 use super::strip;
-use super::triangulate::{delaunay, doubled_area, ears, zip};
+use super::triangulate::{Chains, Room, delaunay, doubled_area, ears, zip};
 use crate::geometry::{Point, Point2, polygon};
 
 /// Regions without a triangle larger than this share of the whole are left out.
 const EMPTY: f64 = 1e-9;
 
-/// A triangulated face: points in space and in parameter space side by side.
+/// A triangulated face: points in space and in parameter space side by side. Filled anew for each face.
 #[derive(Default)]
 pub(super) struct Patch {
     pub points: Vec<Point>,
@@ -27,6 +27,13 @@ pub(super) struct Patch {
 }
 
 impl Patch {
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.uv.clear();
+        self.triangles.clear();
+        self.sides.clear();
+    }
+
     /// Adds a point of the surface.
     pub fn add(&mut self, chart: &Chart, uv: Uv) {
         self.points.push(chart.point(uv));
@@ -54,23 +61,31 @@ impl Patch {
 /// Triangulates the part of the surface that the paths bound. `None` where they bound nothing sensible.
 ///
 /// `quick`: ears and strips are tried before the constrained Delaunay triangulation with points inside.
-pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness, quick: bool) -> Option<Patch> {
+pub(super) fn triangulate(
+    chart: &Chart,
+    paths: &mut [Path],
+    fineness: &Fineness,
+    quick: bool,
+    patch: &mut Patch,
+    room: &mut Room,
+) -> Option<()> {
     if paths.iter().any(Path::winds) || is_complement(chart, paths) {
-        return strip::triangulate(chart, paths, fineness, quick);
+        return strip::triangulate(chart, paths, fineness, quick, patch);
     }
     let outer =
         (0..paths.len()).max_by(|&a, &b| paths[a].signed_area().abs().total_cmp(&paths[b].signed_area().abs()))?;
     gather_inside(chart, paths, outer);
     let layout = Layout::new(paths, outer)?;
-    let patch = layout.patch(paths);
+    layout.add_points(paths, patch);
     let steps = chart.steps(layout.rectangle, fineness);
     let flat = matches!(*chart.surface, crate::brep::Surface::Plane(_));
     let ruled = chart.surface.is_ruled_along_v();
-    let zipped = if flat || !quick { None } else { layout.by_zip(&patch, steps) };
+    if !flat && quick && layout.by_zip(patch, steps, &mut room.chains).is_some() {
+        return Some(());
+    }
     let flat_enough = flat || (quick && steps == [1, 1]);
-    let simple = zipped.or_else(|| if flat_enough { ears(&patch.uv, &layout.rings, layout.area) } else { None });
-    if let Some(triangles) = simple {
-        return Some(Patch { triangles, ..patch });
+    if flat_enough && ears(&patch.uv, &layout.rings, layout.area, room, &mut patch.triangles).is_some() {
+        return Some(());
     }
     let cells =
         if ruled { Grid::rows_for_shape(layout.rectangle, steps, chart.scale(layout.rectangle)) } else { steps };
@@ -134,15 +149,14 @@ impl Layout {
         (area > 0.0 && area.is_finite()).then_some(Self { order, rings, sides, rectangle, area })
     }
 
-    fn patch(&self, paths: &[Path]) -> Patch {
-        let count = paths.iter().map(|p| p.uv.len()).sum();
-        let (points, uv) = (Vec::with_capacity(count), Vec::with_capacity(count));
-        let mut patch = Patch { points, uv, triangles: Vec::new(), sides: self.sides.clone() };
+    /// Makes a patch of the points of the rings.
+    fn add_points(&self, paths: &[Path], patch: &mut Patch) {
+        patch.clear();
+        patch.sides.extend_from_slice(&self.sides);
         for &i in &self.order {
             patch.points.extend_from_slice(&paths[i].points);
             patch.uv.extend_from_slice(&paths[i].uv);
         }
-        patch
     }
 
     /// The rings as segments between `count` points.
@@ -155,54 +169,68 @@ impl Layout {
     }
 
     /// A single ring on a surface that one step suffices for in one direction, as a strip along the other.
-    fn by_zip(&self, patch: &Patch, steps: [usize; 2]) -> Option<Vec<[u32; 3]>> {
+    fn by_zip(&self, patch: &mut Patch, steps: [usize; 2], room: &mut Chains) -> Option<()> {
         if self.rings.len() != 1 {
             return None;
         }
         let along = if steps[0] >= steps[1] { [0, 1] } else { [1, 0] };
-        along.into_iter().filter(|&axis| steps[1 - axis] == 1).find_map(|axis| self.zip_along(patch, axis, steps[axis]))
+        let mut straight_across = along.into_iter().filter(|&axis| steps[1 - axis] == 1);
+        straight_across.find_map(|axis| self.zip_along(patch, axis, steps[axis], room))
     }
 
     /// Cuts the ring at its first and last u (or v) into two chains.
-    fn zip_along(&self, patch: &Patch, axis: usize, steps: usize) -> Option<Vec<[u32; 3]>> {
-        let swapped: Vec<Uv>;
+    fn zip_along(&self, patch: &mut Patch, axis: usize, steps: usize, room: &mut Chains) -> Option<()> {
+        let Chains { ring, lower, upper, turned } = room;
         let uv = if axis == 0 {
             &patch.uv
         } else {
+            turned.clear();
             // Mirrored, not only swapped, so that it still runs the same way round.
-            swapped = patch.uv.iter().map(|p| [p[1], -p[0]]).collect();
-            &swapped
+            turned.extend(patch.uv.iter().map(|p| [p[1], -p[0]]));
+            &*turned
         };
         let [u0, u1] = [self.rectangle[2 * axis], self.rectangle[2 * axis + 1]];
         let near = 1e-7 * (u1 - u0);
-        let (lower, upper) = chains(uv, self.sides[self.order[0]] < 0.0, [u0 + near, u1 - near])?;
+        ring.clear();
+        ring.extend(0..uv.len() as u32);
+        if self.sides[self.order[0]] < 0.0 {
+            ring.reverse();
+        }
+        cut_in_two(uv, ring, [u0 + near, u1 - near], lower, upper)?;
         let rising = |chain: &[u32]| chain.windows(2).all(|w| uv[w[1] as usize][0] >= uv[w[0] as usize][0] - near);
-        if !rising(&lower) || !rising(&upper) {
+        if !rising(lower) || !rising(upper) {
             return None;
         }
-        zip(uv, &lower, &upper, self.area, 1.7 * (u1 - u0) / steps as f64 + near)
+        patch.triangles.clear();
+        let [lower, upper] = [lower, upper].map(|chain| chain.iter().copied());
+        zip(uv, lower, upper, self.area, 1.7 * (u1 - u0) / steps as f64 + near, &mut patch.triangles)
     }
 }
 
-/// The lower and the upper chain of a ring, both from its first to its last u.
-fn chains(uv: &[Uv], clockwise: bool, [first, last]: [f64; 2]) -> Option<(Vec<u32>, Vec<u32>)> {
-    let n = uv.len();
-    let mut ring: Vec<u32> = (0..n as u32).collect();
-    if clockwise {
-        ring.reverse();
-    }
+/// The lower and the upper chain of a counter-clockwise ring, both from its first to its last u.
+fn cut_in_two(
+    uv: &[Uv],
+    ring: &mut [u32],
+    [first, last]: [f64; 2],
+    lower: &mut Vec<u32>,
+    upper: &mut Vec<u32>,
+) -> Option<()> {
+    let n = ring.len();
     let at_start = |&i: &u32| uv[i as usize][0] <= first;
-    // Counter-clockwise the last point on the left side is its lowest.
+    // The last point on the left side is its lowest.
     let start = (0..n).find(|&k| at_start(&ring[k]) && !at_start(&ring[(k + 1) % n]))?;
     ring.rotate_left(start);
     let right = ring.iter().position(|&i| uv[i as usize][0] >= last)?;
-    let mut upper: Vec<u32> = ring[right..].iter().rev().copied().collect();
-    upper.insert(0, ring[0]);
-    Some((ring[..=right].to_vec(), upper))
+    lower.clear();
+    lower.extend_from_slice(&ring[..=right]);
+    upper.clear();
+    upper.push(ring[0]);
+    upper.extend(ring[right..].iter().rev());
+    Some(())
 }
 
 /// Constrained Delaunay with grid points; the inside is where a ray crosses an odd number of segments.
-fn by_delaunay(chart: &Chart, layout: &Layout, mut patch: Patch, grid: Option<[usize; 2]>) -> Option<Patch> {
+fn by_delaunay(chart: &Chart, layout: &Layout, patch: &mut Patch, grid: Option<[usize; 2]>) -> Option<()> {
     let segments = layout.segments(patch.uv.len());
     let sides: Vec<[Uv; 2]> = segments.iter().map(|s| s.map(|i| patch.uv[i as usize])).collect();
     let mut scale = chart.scale(rectangle(patch.uv.iter()));
@@ -230,11 +258,11 @@ pub(super) fn crosses_below(a: &Uv, b: &Uv, p: &Uv, along: usize) -> bool {
 /// Triangulates the points and keeps the regions that are inside.
 pub(super) fn fill(
     chart: &Chart,
-    mut patch: Patch,
+    patch: &mut Patch,
     segments: &[[u32; 2]],
     scale: [f64; 2],
     inside: impl Fn(&Uv) -> bool,
-) -> Option<Patch> {
+) -> Option<()> {
     let origin = patch.uv.first().copied()?;
     let scaled: Vec<Uv> =
         patch.uv.iter().map(|p| [(p[0] - origin[0]) * scale[0], (p[1] - origin[1]) * scale[1]]).collect();
@@ -256,9 +284,10 @@ pub(super) fn fill(
         })
         .collect();
     let kept = cut.triangles.iter().zip(&cut.regions).filter(|(_, r)| keep[**r as usize]);
-    patch.triangles = kept.map(|(t, _)| *t).collect();
+    patch.triangles.clear();
+    patch.triangles.extend(kept.map(|(t, _)| *t));
     patch.drop_unused();
-    (!patch.triangles.is_empty()).then_some(patch)
+    (!patch.triangles.is_empty()).then_some(())
 }
 
 #[cfg(test)]
@@ -277,7 +306,7 @@ mod tests {
         let border = [[0.0, 0.0], [1.0, 1e-17], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
         border.iter().for_each(|&uv| patch.add(&chart, uv));
         let segments: Vec<[u32; 2]> = (0..5).map(|i| [i, (i + 1) % 5]).collect();
-        let patch = fill(&chart, patch, &segments, [1.0, 1.0], |_| true).unwrap();
+        fill(&chart, &mut patch, &segments, [1.0, 1.0], |_| true).unwrap();
         assert_eq!(patch.triangles.len(), 3);
     }
 }

@@ -26,6 +26,8 @@ pub(super) struct EdgeLines {
     free_form: Vec<bool>,
     /// Beyond this number of points edges become straight.
     most_points: usize,
+    /// The parameters at which the edge at hand is cut.
+    parameters: Vec<f64>,
 }
 
 /// What the edges of a body are cut by.
@@ -48,13 +50,19 @@ impl EdgeLines {
     ) -> Result<Self, Cancelled> {
         let free_form = edges_of_free_form_faces(model);
         let [points, middles] = [(); 2].map(|()| Vec::with_capacity(4 * spans.len()));
-        let mut lines = Self { points, middles, ranges: Vec::with_capacity(spans.len()), free_form, most_points };
+        let (ranges, parameters) = (Vec::with_capacity(spans.len()), Vec::new());
+        let mut lines = Self { points, middles, ranges, free_form, most_points, parameters };
         for (index, span) in spans.iter().enumerate() {
             cancel.check()?;
             let range = lines.add(model, EdgeId(index as u32), *span, fineness);
             lines.ranges.push(range);
         }
         Ok(lines)
+    }
+
+    /// Points of all edges.
+    pub fn count(&self) -> usize {
+        self.points.len()
     }
 
     /// Points and middles of an edge; the last middle repeats the last point.
@@ -102,12 +110,14 @@ impl EdgeLines {
     fn follow(&mut self, curve: &Curve, span: [f64; 2], fineness: &Fineness, least: usize) {
         let period = curve.period();
         let at = |t: f64| curve.point(curve.wrap(t, period));
-        let parameters = match curve {
-            Curve::Circle { radius, .. } => conic_parameters(span, *radius, fineness, least),
-            Curve::Ellipse { semi_x, semi_y, .. } => conic_parameters(span, semi_x.max(*semi_y), fineness, least),
-            _ => adaptive_parameters(curve, span, period, fineness, least),
-        };
-        for pair in parameters.windows(2) {
+        let out = &mut self.parameters;
+        out.clear();
+        match curve {
+            Curve::Circle { radius, .. } => conic_parameters(span, *radius, fineness, least, out),
+            Curve::Ellipse { semi_x, semi_y, .. } => conic_parameters(span, semi_x.max(*semi_y), fineness, least, out),
+            _ => adaptive_parameters(curve, span, period, fineness, least, out),
+        }
+        for pair in self.parameters.windows(2) {
             self.points.push(at(pair[0]));
             self.middles.push(at(0.5 * (pair[0] + pair[1])));
         }
@@ -139,12 +149,12 @@ pub(super) fn angular_step(radius: f64, fineness: &Fineness) -> f64 {
 
 /// Equal steps of the angle: whatever the pose, the same points. A whole turn is cut into quarters, so that it stays its
 /// own mirror image.
-fn conic_parameters(span: [f64; 2], radius: f64, fineness: &Fineness, least: usize) -> Vec<f64> {
+fn conic_parameters(span: [f64; 2], radius: f64, fineness: &Fineness, least: usize, out: &mut Vec<f64>) {
     let width = span[1] - span[0];
     let count = ((width.abs() / angular_step(radius, fineness) - 1e-9).ceil() as usize).clamp(least, MAX_POINTS);
     let count = if width.abs() > TAU - 1e-9 { count.next_multiple_of(4) } else { count };
     let step = width / count as f64;
-    (0..=count).map(|i| span[0] + step * i as f64).collect()
+    out.extend((0..=count).map(|i| span[0] + step * i as f64));
 }
 
 /// Halves the pieces between the curve's breaks until chord and tangents are near enough.
@@ -154,23 +164,23 @@ fn adaptive_parameters(
     period: Option<f64>,
     fineness: &Fineness,
     least: usize,
-) -> Vec<f64> {
+    parameters: &mut Vec<f64>,
+) {
     let piece = Piece { curve, period, fineness };
     let stops = stops(curve, span, period);
     let pieces = (least.max(2) / (stops.len() - 1).max(1)).max(1);
-    let mut parameters = vec![span[0]];
+    parameters.push(span[0]);
     for pair in stops.windows(2) {
         for i in 0..pieces {
             let share = |i: usize| pair[0] + (pair[1] - pair[0]) * i as f64 / pieces as f64;
             let ends = [share(i), share(i + 1)];
-            piece.halve(ends, ends.map(|t| piece.start(t)), MAX_DEPTH, &mut parameters);
+            piece.halve(ends, ends.map(|t| piece.start(t)), MAX_DEPTH, parameters);
         }
         if parameters.len() > MAX_POINTS {
             break;
         }
     }
     *parameters.last_mut().expect("it starts with one") = span[1];
-    parameters
 }
 
 /// The ends of the span and the breaks of the curve between them, in order along the span.

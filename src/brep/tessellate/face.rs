@@ -1,12 +1,15 @@
 //! One face -> its triangles and integrals, in the coordinates of its body.
 
-use super::Few;
-use super::boundary::{self, Border, Path};
+use std::ops::Range;
+
+use super::border::Border;
+use super::boundary::{Mapped, Paths, map_border};
 use super::chart::{Chart, Uv};
 use super::domain::{self, Patch};
 use super::edges::{EdgeLines, Fineness};
 use super::fallback::planar_fill;
-use super::integrate::{Integrals, integrate, integrate_triangles};
+use super::integrate::{Integrals, Side, integrate, integrate_triangles};
+use super::triangulate::Room;
 use crate::brep::{Face, FaceGeometry, Facets, Model, Surface};
 use crate::cancel::Cancel;
 use crate::geometry::Point;
@@ -44,11 +47,21 @@ pub(super) struct Context<'a> {
     pub reference: Vec<Point>,
 }
 
+/// The tessellated faces of a model, or some of them, in the coordinates of their bodies.
+#[derive(Default)]
+pub(super) struct Meshes {
+    pub points: Vec<Point>,
+    /// Counter-clockwise seen from the face normal's side; indices into the points of the face.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each face its mesh, or why it has none.
+    pub faces: Vec<Result<FaceMesh, String>>,
+}
+
 /// A tessellated face.
 pub(super) struct FaceMesh {
-    pub points: Vec<Point>,
-    /// Counter-clockwise seen from the face normal's side.
-    pub triangles: Vec<[u32; 3]>,
+    /// Where its points and triangles are.
+    pub points: Range<usize>,
+    pub triangles: Range<usize>,
     pub integrals: Integrals,
     /// Those of the triangles as they are.
     pub plain: Integrals,
@@ -56,40 +69,91 @@ pub(super) struct FaceMesh {
     pub warning: Option<String>,
 }
 
-/// Tessellates a face, or says why it cannot be.
-pub(super) fn mesh(context: &Context, face: &Face, reference: &Point) -> Result<FaceMesh, String> {
-    let (surface, same_sense) = match &face.geometry {
-        FaceGeometry::Trimmed { surface, same_sense } => (surface, *same_sense),
-        FaceGeometry::Faceted(facets) => return faceted(facets, reference),
-    };
-    let edges = border(context, face)?;
-    let mut chart = Chart::new(surface, same_sense, &edges.loops, context.size);
-    chart.cancel = Some(context.cancel);
-    match trimmed(context, surface, &mut chart, edges, reference) {
-        Ok(mesh) => Ok(mesh),
-        Err(why) => filled(context, face, border(context, face)?.loops, reference, &why),
+/// What is measured of a face.
+struct Measured {
+    integrals: Integrals,
+    plain: Integrals,
+    warning: Option<String>,
+}
+
+/// Memory that is filled anew for each face.
+#[derive(Default)]
+pub(super) struct Scratch {
+    border: Border,
+    work: Work,
+}
+
+/// What becomes of a border.
+#[derive(Default)]
+pub(super) struct Work {
+    pub mapped: Vec<Mapped>,
+    pub paths: Paths,
+    pub patch: Patch,
+    /// The best patch so far, while a finer one is made.
+    other: Patch,
+    pub room: Room,
+    sides: Vec<Side>,
+}
+
+impl Meshes {
+    /// Tessellates a face, or says why it cannot be.
+    pub fn make(
+        &mut self,
+        context: &Context,
+        face: &Face,
+        reference: &Point,
+        scratch: &mut Scratch,
+    ) -> Result<FaceMesh, String> {
+        let Measured { integrals, plain, warning } = match &face.geometry {
+            FaceGeometry::Trimmed { surface, same_sense } => {
+                let Scratch { border, work } = scratch;
+                let border = border.fill(face, &context.lines, &context.degenerate);
+                let border = border.ok_or("a border of too many points")?;
+                trimmed(context, (surface, *same_sense), border, reference, work)
+                    .or_else(|why| filled(context, face, border, reference, work, why))?
+            }
+            FaceGeometry::Faceted(facets) => faceted(facets, reference, &mut scratch.work.patch)?,
+        };
+        let patch = &scratch.work.patch;
+        let (point, triangle) = (self.points.len(), self.triangles.len());
+        self.points.extend_from_slice(&patch.points);
+        self.triangles.extend_from_slice(&patch.triangles);
+        let (points, triangles) = (point..self.points.len(), triangle..self.triangles.len());
+        Ok(FaceMesh { points, triangles, integrals, plain, reference: *reference, warning })
+    }
+
+    /// Adds the faces of others.
+    pub fn append(&mut self, others: Self) {
+        let (point, triangle) = (self.points.len(), self.triangles.len());
+        self.points.extend(others.points);
+        self.triangles.extend(others.triangles);
+        let moved = |range: Range<usize>, by: usize| range.start + by..range.end + by;
+        let moved = |mesh: FaceMesh| FaceMesh {
+            points: moved(mesh.points, point),
+            triangles: moved(mesh.triangles, triangle),
+            ..mesh
+        };
+        self.faces.extend(others.faces.into_iter().map(|mesh| mesh.map(moved)));
     }
 }
 
-fn border(context: &Context, face: &Face) -> Result<Border, String> {
-    Ok(Border::of(face, &context.lines, &context.degenerate).ok_or("a border of too many points")?)
-}
-
+/// Tessellates the part of a surface within a border.
 fn trimmed(
     context: &Context,
-    surface: &Surface,
-    chart: &mut Chart,
-    border: Border,
+    (surface, same_sense): (&Surface, bool),
+    border: &Border,
     reference: &Point,
-) -> Result<FaceMesh, String> {
-    let far = FAR * context.size;
-    let mut paths = boundary::paths(chart, border.loops, context.size, far)
+    work: &mut Work,
+) -> Result<Measured, String> {
+    let mut chart = Chart::new(surface, same_sense, border.points(), context.size);
+    chart.cancel = Some(context.cancel);
+    map_border(&chart, border, context.size, FAR * context.size, &mut work.mapped, &mut work.paths)
         .map_err(|e| format!("an edge is {:.3} mm off the surface", e.distance))?;
-    chart.settle(&paths, border.seams);
-    if paths.is_empty() && !chart.is_closed() {
-        paths.push(rim(chart, surface).ok_or("the face has no bounds and its surface is infinite")?);
+    chart.settle(&work.paths, border.seams());
+    if work.paths.is_empty() && !chart.is_closed() {
+        add_rim(&chart, surface, &mut work.paths).ok_or("the face has no bounds and its surface is infinite")?;
     }
-    let mut best = patch(chart, &mut paths, &context.fineness, true, reference)?;
+    let mut best = patch(&chart, &context.fineness, true, reference, work)?;
     if matches!(*chart.surface, Surface::Plane(_)) {
         return Ok(best);
     }
@@ -102,39 +166,47 @@ fn trimmed(
         // Errors shrink as the deflection does, unless the edges are too coarse.
         let share = (AIM / off).max(FINER);
         fineness = Fineness { deflection: share * fineness.deflection, angle: share.sqrt() * fineness.angle };
-        let Ok(finer) = patch(chart, &mut paths, &fineness, false, reference) else { break };
-        let finer_off = error(&finer, context);
-        if finer_off <= (HELPS * off).max(1.0) {
-            (best, off) = (finer, finer_off);
-        } else if finer.triangles.len() > best.triangles.len() {
-            break;
+        std::mem::swap(&mut work.patch, &mut work.other);
+        let finer = patch(&chart, &fineness, false, reference, work).map(|finer| (error(&finer, context), finer));
+        match finer {
+            Ok((finer_off, finer)) if finer_off <= (HELPS * off).max(1.0) => (best, off) = (finer, finer_off),
+            worse => {
+                let more = work.patch.triangles.len() > work.other.triangles.len();
+                std::mem::swap(&mut work.patch, &mut work.other);
+                if worse.is_err() || more {
+                    break;
+                }
+            }
         }
     }
     Ok(best)
 }
 
+/// Triangulates what the paths bound, and measures it.
 fn patch(
     chart: &Chart,
-    paths: &mut [Path],
     fineness: &Fineness,
     quick: bool,
     reference: &Point,
-) -> Result<FaceMesh, String> {
-    let patch = domain::triangulate(chart, paths, fineness, quick).ok_or("the loops bound no region")?;
-    let integrals = integrate(chart, &patch, paths, reference);
+    work: &mut Work,
+) -> Result<Measured, String> {
+    let Work { paths, patch, room, sides, .. } = work;
+    domain::triangulate(chart, paths, fineness, quick, patch, room).ok_or("the loops bound no region")?;
+    let integrals = integrate(chart, patch, paths, reference, sides);
     if !(integrals.area.is_finite() && integrals.area > 0.0 && integrals.flux.is_finite()) {
         return Err("the area is not a positive number".to_owned());
     }
-    let turn = |t: [u32; 3]| if chart.flipped { [t[0], t[2], t[1]] } else { t };
-    let triangles: Vec<_> = patch.triangles.into_iter().map(turn).collect();
-    let plain = integrate_triangles(&patch.points, &triangles, reference);
-    Ok(FaceMesh { points: patch.points, triangles, integrals, plain, reference: *reference, warning: None })
+    if chart.flipped {
+        patch.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    let plain = integrate_triangles(&patch.points, &patch.triangles, reference);
+    Ok(Measured { integrals, plain, warning: None })
 }
 
 /// How far the triangles are from the surface they stand for, 1 being the most that is taken: their area, and the
 /// volume between them and the surface, which is their mean distance times the area.
-fn error(mesh: &FaceMesh, context: &Context) -> f64 {
-    let (plain, exact) = (&mesh.plain, &mesh.integrals);
+fn error(measured: &Measured, context: &Context) -> f64 {
+    let (plain, exact) = (&measured.plain, &measured.integrals);
     let unseen = UNSEEN * context.size * context.size;
     let area_off = AREA_OFF * context.coarser.powi(3);
     let by_area = (plain.area - exact.area).abs() / (area_off * exact.area).max(unseen);
@@ -142,14 +214,14 @@ fn error(mesh: &FaceMesh, context: &Context) -> f64 {
     by_area.max(by_distance)
 }
 
-/// The border of the surface's own parameter rectangle.
-fn rim(chart: &Chart, surface: &Surface) -> Option<Path> {
+/// Adds the border of the surface's own parameter rectangle.
+fn add_rim(chart: &Chart, surface: &Surface, paths: &mut Paths) -> Option<()> {
     let [u0, u1, v0, v1] = surface.domain();
     if ![u0, u1, v0, v1].iter().all(|x| x.is_finite()) {
         return None;
     }
     let corners = [[u0, v0], [u1, v0], [u1, v1], [u0, v1]];
-    let mut path = Path::default();
+    let path = paths.add();
     for side in 0..4 {
         let (a, b) = (corners[side], corners[(side + 1) % 4]);
         for i in 0..RIM_SEGMENTS {
@@ -159,31 +231,35 @@ fn rim(chart: &Chart, surface: &Surface) -> Option<Path> {
             path.points.push(chart.point(at(i as f64)));
         }
     }
-    Some(path)
+    Some(())
 }
 
+/// Fills the border of a face that does not fit its surface with a plane.
 fn filled(
     context: &Context,
     face: &Face,
-    borders: Few<[Vec<Point>; 2]>,
+    border: &Border,
     reference: &Point,
-    why: &str,
-) -> Result<FaceMesh, String> {
-    let patch = planar_fill(borders, context).ok_or_else(|| why.to_owned())?;
-    let integrals = integrate_triangles(&patch.points, &patch.triangles, reference);
+    work: &mut Work,
+    why: String,
+) -> Result<Measured, String> {
+    if planar_fill(context, border, work).is_none() {
+        return Err(why);
+    }
+    let integrals = integrate_triangles(&work.patch.points, &work.patch.triangles, reference);
     let warning = Some(format!("face #{}: {why}; its border was filled with a plane", face.entity));
-    let Patch { points, triangles, .. } = patch;
-    Ok(FaceMesh { points, triangles, integrals, plain: integrals, reference: *reference, warning })
+    Ok(Measured { integrals, plain: integrals, warning })
 }
 
-fn faceted(facets: &Facets, reference: &Point) -> Result<FaceMesh, String> {
+fn faceted(facets: &Facets, reference: &Point, patch: &mut Patch) -> Result<Measured, String> {
     let count = facets.points.len() as u32;
     let good = |t: &&[u32; 3]| t.iter().all(|&i| i < count);
-    let triangles: Vec<_> = facets.triangles.iter().filter(good).copied().collect();
-    let integrals = integrate_triangles(&facets.points, &triangles, reference);
+    patch.clear();
+    patch.points.extend_from_slice(&facets.points);
+    patch.triangles.extend(facets.triangles.iter().filter(good));
+    let integrals = integrate_triangles(&patch.points, &patch.triangles, reference);
     if !(integrals.area > 0.0 && integrals.area.is_finite()) {
         return Err("the triangles have no area".to_owned());
     }
-    let points = facets.points.clone();
-    Ok(FaceMesh { points, triangles, integrals, plain: integrals, reference: *reference, warning: None })
+    Ok(Measured { integrals, plain: integrals, warning: None })
 }

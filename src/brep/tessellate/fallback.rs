@@ -1,25 +1,27 @@
 //! Faces whose edges do not fit their surface: the border is filled with a plane, so that silhouettes stay closed.
 
-use super::Few;
-use super::boundary::paths;
+use super::border::Border;
+use super::boundary::map_border;
 use super::chart::Chart;
-use super::domain::{Patch, triangulate};
-use super::face::Context;
+use super::domain::triangulate;
+use super::face::{Context, Work};
 use crate::brep::{Placement, Surface};
 use crate::geometry::{Point, Vector, any_perpendicular, isometry::mean};
 
 /// Fills the border; `None` where it has no extent.
-pub(super) fn planar_fill(borders: Few<[Vec<Point>; 2]>, context: &Context) -> Option<Patch> {
+pub(super) fn planar_fill(context: &Context, border: &Border, work: &mut Work) -> Option<()> {
     let size = context.size;
-    let normal = borders.iter().map(|b| area_vector(&b[0])).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+    let loops = || border.loops().map(|[points, _]| points);
+    let normal = loops().map(area_vector).max_by(|a, b| a.norm().total_cmp(&b.norm()))?;
     let z = normal.try_normalize(1e-12 * size * size)?;
     let x = any_perpendicular(&z);
-    let largest = borders.iter().max_by_key(|b| b[0].len())?;
-    let surface = Surface::Plane(Placement { origin: mean(&largest[0]), x, y: z.cross(&x), z });
+    let largest = loops().max_by_key(|points| points.len())?;
+    let surface = Surface::Plane(Placement { origin: mean(largest), x, y: z.cross(&x), z });
     let mut chart = Chart::new(&surface, true, &[], size);
     chart.cancel = Some(context.cancel);
-    let mut paths = paths(&chart, borders, size, f64::INFINITY).ok()?;
-    triangulate(&chart, &mut paths, &context.fineness, true)
+    let Work { mapped, paths, patch, room, .. } = work;
+    map_border(&chart, border, size, f64::INFINITY, mapped, paths).ok()?;
+    triangulate(&chart, paths, &context.fineness, true, patch, room)
 }
 
 /// Half the sum of the cross products along a closed polyline: its area vector.

@@ -4,8 +4,6 @@
 //! The quadrature takes the middles of the sides, which is exact for quadratic functions (Strang and Fix 1973), and of
 //! the rules that are so the one that asks for the fewest points: neighbours share them.
 
-use std::cell::Cell;
-
 use super::boundary::Path;
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
@@ -30,8 +28,9 @@ pub(super) struct Integrals {
 }
 
 impl Integrals {
-    fn add(&mut self, place: &Vector, normal: &Vector, weight: f64) {
-        let area = weight * normal.norm();
+    /// Adds a piece with this normal, of this length.
+    fn add(&mut self, place: &Vector, (normal, length): (&Vector, f64), weight: f64) {
+        let area = weight * length;
         self.area += area;
         self.moment += place * area;
         self.flux += weight * place.dot(normal) / 3.0;
@@ -43,14 +42,33 @@ impl Integrals {
     }
 }
 
-/// Integrates over a patch and the slivers along its paths.
-pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference: &Point) -> Integrals {
+/// Integrates over a patch and the slivers along its paths; `room` is for the sides of its triangles.
+pub(super) fn integrate(
+    chart: &Chart,
+    patch: &Patch,
+    paths: &[Path],
+    reference: &Point,
+    room: &mut Vec<Side>,
+) -> Integrals {
     let mut sum = Integrals::default();
     let sense = if chart.flipped { -1.0 } else { 1.0 };
+    // A plane has one normal.
+    let plane = match &*chart.surface {
+        Surface::Plane(placement) => Some((placement, placement.x.cross(&placement.y))),
+        _ => None,
+    };
+    let plane = plane.map(|(placement, normal)| (placement, normal, normal.norm()));
     let mut at = |uv: Uv, weight: f64| {
-        let jet = chart.tangents(uv);
+        let (point, normal, length) = match plane {
+            Some((placement, normal, length)) => (placement.point(uv[0], uv[1], 0.0), normal, length),
+            None => {
+                let jet = chart.tangents(uv);
+                let normal = jet.normal();
+                (jet.point, normal, normal.norm())
+            }
+        };
         let mut one = Integrals::default();
-        one.add(&(jet.point - reference), &jet.normal(), weight);
+        one.add(&(point - reference), (&normal, length), weight);
         sum.area += one.area;
         sum.moment += one.moment;
         sum.flux += sense * one.flux;
@@ -66,11 +84,8 @@ pub(super) fn integrate(chart: &Chart, patch: &Patch, paths: &[Path], reference:
             })
         }
         _ => {
-            let sides = shared_sides(patch, areas, SIDES.take());
-            sides.iter().for_each(|(side, area)| at(middle(patch, *side), *area));
-            if sides.capacity() < MOST_KEPT {
-                SIDES.set(sides);
-            }
+            fill_with_sides(patch, areas, room);
+            room.iter().for_each(|(side, area)| at(middle(patch, *side), *area));
         }
     }
     for (path, side) in paths.iter().zip(&patch.sides) {
@@ -91,18 +106,10 @@ fn mix(patch: &Patch, triangle: &[u32; 3], w: [f64; 3]) -> Uv {
 }
 
 /// The ends of a side, the smaller index first, and a third of the area of the triangles beside it.
-type Side = ([u32; 2], f64);
+pub(super) type Side = ([u32; 2], f64);
 
-/// Sides that a thread keeps room for at most.
-const MOST_KEPT: usize = 1 << 14;
-
-thread_local! {
-    /// Room for the sides of the thread's next face.
-    static SIDES: Cell<Vec<Side>> = const { Cell::new(Vec::new()) };
-}
-
-/// Each side once, written over `sides`.
-fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>, mut sides: Vec<Side>) -> Vec<Side> {
+/// Each side once.
+fn fill_with_sides(patch: &Patch, areas: impl Iterator<Item = f64>, sides: &mut Vec<Side>) {
     sides.clear();
     sides.reserve(3 * patch.triangles.len());
     for ([a, b, c], area) in patch.triangles.iter().zip(areas) {
@@ -115,7 +122,6 @@ fn shared_sides(patch: &Patch, areas: impl Iterator<Item = f64>, mut sides: Vec<
         first.1 += if same { next.1 } else { 0.0 };
         same
     });
-    sides
 }
 
 fn middle(patch: &Patch, side: [u32; 2]) -> Uv {
@@ -137,7 +143,8 @@ pub(super) fn integrate_triangles(points: &[Point], triangles: &[[u32; 3]], refe
     let mut sum = Integrals::default();
     for t in triangles {
         let [a, b, c] = t.map(|i| points[i as usize] - reference);
-        sum.add(&((a + b + c) / 3.0), &(b - a).cross(&(c - a)), 0.5);
+        let normal = (b - a).cross(&(c - a));
+        sum.add(&((a + b + c) / 3.0), (&normal, normal.norm()), 0.5);
     }
     sum
 }

@@ -3,21 +3,23 @@
 //!
 //! In: a [`Model`]. Out: a [`Mesh`] of all occurrences with exact areas, what was left out, and what was guessed.
 //!
-//! Method: every edge becomes one polyline. A face's loops, less its seams, are projected onto the surface, unwrapped
-//! over the periods and laid out as closed paths (`boundary`). Level rings that go round the surface have rows of
+//! Method: every edge becomes one polyline. A face's loops, less its seams (`border`), are projected onto the surface,
+//! unwrapped over the periods and laid out as closed paths (`boundary`). Level rings that go round the surface have rows of
 //! triangles between them (`bands`), other paths that go round it are wrapped into a strip that is cut open (`strip`).
 //! Polygons are cut into ears, straight-lined walls into strips; everything else is a constrained Delaunay
 //! triangulation with interior points by curvature, and the inside is found by the parity of crossings (`domain`).
 //! Edges that are too coarse for a narrow face are cut again (`refine`). Area, centroid and flux are integrals over
 //! the true trimmed surface (`integrate`).
 //!
-//! Cost: linear in edges and faces; a Delaunay face of n points takes O(n log n).
+//! Cost: linear in edges and faces; a Delaunay face of n points takes O(n log n). One face after the other is made in the
+//! same memory (`face::Scratch`) and added to few arrays, so that most faces take no memory of their own.
 //!
 //! It does not promise: that free-form silhouettes are nearer than the deflection; that a face whose edges do not
 //! lie on its surface has the right shape (it is filled with a plane, with a warning).
 
 mod bands;
 mod bending;
+mod border;
 mod boundary;
 mod chart;
 mod columns;
@@ -45,7 +47,7 @@ use super::{EdgeId, Face, Mesh, Model, Skipped};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Point;
 use edges::{EdgeLines, Fineness};
-use face::{Context, FaceMesh};
+use face::{Context, Meshes, Scratch};
 use place::Place;
 
 /// What a face has one or two of in most cases, such as loops.
@@ -79,6 +81,8 @@ const PARALLEL_FACES: usize = 2048;
 const COARSEST: f64 = 3.0;
 /// Faces that are tessellated before their triangles are counted.
 const BATCH: usize = 512;
+/// Faces of a batch that a thread takes at a time.
+const PART: usize = 8;
 
 /// The mesh of all placed faces, the faces left out (with the reason), and warnings.
 ///
@@ -106,16 +110,16 @@ pub fn tessellate(
         let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
         let reference = reference.clone();
         let mut context = Context { model, cancel, lines, degenerate, fineness, coarser, size: part_size, reference };
-        let mut faces = face_meshes(&context, most)?;
-        let share = place::triangles(model, &faces) as f64 / most as f64;
+        let mut meshes = face_meshes(&context, most)?;
+        let share = place::triangles(model, &meshes.faces) as f64 / most as f64;
         if share > 1.0 && coarser < COARSEST {
             // The second time nothing is left to chance.
             coarser = if coarser > 1.0 { COARSEST } else { (1.2 * share.sqrt()).min(COARSEST) };
             continue;
         }
-        refine::refine(&mut context, &spans, &mut faces, cancel)?;
+        refine::refine(&mut context, &spans, &mut meshes, cancel)?;
         let warning = context.lines.warning();
-        let (mesh, skipped, mut warnings) = place::place(model, faces, most, cancel)?.finish();
+        let (mesh, skipped, mut warnings) = place::place(model, meshes, most, cancel)?.finish();
         warnings.extend(warning);
         if coarser > 1.0 {
             warnings.push(format!("chords are {coarser:.1} times as long as asked for: too many triangles"));
@@ -152,29 +156,48 @@ fn references(model: &Model, places: &[Option<Place>]) -> Vec<Point> {
 }
 
 /// The meshes of the faces in their order, of the first ones only where these have more than `most` triangles.
-fn face_meshes(context: &Context, most: usize) -> Result<Vec<Result<FaceMesh, String>>, Cancelled> {
-    let one = |(face, reference): (&Face, &Point)| {
-        let mesh = face::mesh(context, face, reference);
-        // Asked afterwards, too: what a cancelled face says means nothing.
-        context.cancel.check().map(|()| mesh)
-    };
+fn face_meshes(context: &Context, most: usize) -> Result<Meshes, Cancelled> {
     let (faces, account) = (&context.model.faces, context.cancel.account());
-    let (mut meshes, mut triangles) = (Vec::with_capacity(faces.len()), 0);
+    let mut meshes = Meshes::default();
+    meshes.faces.reserve_exact(faces.len());
+    // Most points are those of edges, each in two faces.
+    let points = context.lines.count().min(most);
+    meshes.points.reserve(2 * points);
+    meshes.triangles.reserve(2 * points);
+    let mut scratch = Scratch::default();
     for (batch, references) in faces.chunks(BATCH).zip(context.reference.chunks(BATCH)) {
-        let before = meshes.len();
         if faces.len() < PARALLEL_FACES {
-            for face in batch.iter().zip(references) {
-                meshes.push(one(face)?);
-            }
+            add_meshes(context, (batch, references), &mut scratch, &mut meshes)?;
         } else {
-            let of_thread = |face| account.within(|| one(face));
-            let made: Vec<_> = batch.par_iter().zip(references).map(of_thread).collect::<Result<_, _>>()?;
-            meshes.extend(made);
+            let of_thread = |part| {
+                account.within(|| {
+                    let mut made = Meshes::default();
+                    add_meshes(context, part, &mut Scratch::default(), &mut made).map(|()| made)
+                })
+            };
+            let parts = batch.par_chunks(PART).zip(references.par_chunks(PART));
+            let made: Vec<Meshes> = parts.map(of_thread).collect::<Result<_, _>>()?;
+            made.into_iter().for_each(|made| meshes.append(made));
         }
-        triangles += meshes[before..].iter().flatten().map(|mesh: &FaceMesh| mesh.triangles.len()).sum::<usize>();
-        if triangles > most {
+        if meshes.triangles.len() > most {
             break;
         }
     }
     Ok(meshes)
+}
+
+/// Tessellates some faces, each with the point that its integrals refer to.
+fn add_meshes(
+    context: &Context,
+    (faces, references): (&[Face], &[Point]),
+    scratch: &mut Scratch,
+    meshes: &mut Meshes,
+) -> Result<(), Cancelled> {
+    for (face, reference) in faces.iter().zip(references) {
+        let mesh = meshes.make(context, face, reference, scratch);
+        // Asked afterwards, too: what a cancelled face says means nothing.
+        context.cancel.check()?;
+        meshes.faces.push(mesh);
+    }
+    Ok(())
 }

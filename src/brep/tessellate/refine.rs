@@ -3,7 +3,7 @@
 use rustc_hash::FxHashSet;
 
 use super::edges::Fineness;
-use super::face::{self, Context, FaceMesh};
+use super::face::{Context, FaceMesh, Meshes, Scratch};
 use crate::brep::{Curve, EdgeId, Face};
 use crate::cancel::{Cancel, Cancelled};
 
@@ -18,11 +18,12 @@ const ROUNDS: i32 = 2;
 pub(super) fn refine(
     context: &mut Context,
     spans: &[Option<[f64; 2]>],
-    faces: &mut [Result<FaceMesh, String>],
+    meshes: &mut Meshes,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
+    let mut scratch = Scratch::default();
     for round in 1..=ROUNDS {
-        let edges = coarse_edges(context, faces);
+        let edges = coarse_edges(context, &meshes.faces);
         if edges.is_empty() {
             break;
         }
@@ -33,9 +34,9 @@ pub(super) fn refine(
             context.lines.replace(context.model, edge, spans[edge.index()], &finer);
         }
         let touched = |face: &Face| edges_of(face).any(|e| edges.contains(&e));
-        let all = context.model.faces.iter().zip(&context.reference).zip(&mut *faces);
-        for ((face, reference), mesh) in all.filter(|((face, _), _)| touched(face)) {
-            *mesh = face::mesh(context, face, reference);
+        let all = context.model.faces.iter().zip(&context.reference).enumerate().take(meshes.faces.len());
+        for (i, (face, reference)) in all.filter(|(_, (face, _))| touched(face)) {
+            meshes.faces[i] = meshes.make(context, face, reference, &mut scratch);
             cancel.check()?;
         }
     }

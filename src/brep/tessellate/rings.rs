@@ -1,18 +1,19 @@
 //! The wall between two rings that go round a straight-lined surface once each: a strip that needs no cut.
 
+use std::ops::Range;
+
 use super::Few;
-use super::boundary::{Path, rectangle};
+use super::boundary::{Path, rectangle, signed_area};
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::edges::Fineness;
 use super::triangulate::zip;
-use crate::geometry::{Point2, polygon};
 
 /// How much wider than a step of the curvature triangles may be.
 pub(super) const WIDEST: f64 = 2.2;
 
 /// The wall, where two rings bound one and neither turns back on its way round.
-pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Fineness) -> Option<Patch> {
+pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Fineness, patch: &mut Patch) -> Option<()> {
     let [a, b] = paths else { return None };
     let period = chart.periods[0]?;
     let once = a.winding[0].abs() == 1 && a.winding[1] == 0 && b.winding == [-a.winding[0], 0];
@@ -20,13 +21,12 @@ pub(super) fn between_two_rings(chart: &Chart, paths: &[Path], fineness: &Finene
         return None;
     }
     let (low, high) = if level(a) < level(b) { (a, b) } else { (b, a) };
-    let mut patch = Patch::default();
-    let [lower, upper] = [low, high].map(|p| add_ring(&mut patch, p, period, low.uv[0][0]));
+    patch.clear();
+    let [lower, upper] = [low, high].map(|p| add_ring(patch, p, period, low.uv[0][0]));
     let [_, _, v0, v1] = rectangle(patch.uv.iter());
     let steps = chart.steps([0.0, period, v0, v1], fineness)[0].max(3);
-    patch.triangles = wall(&patch.uv, &lower, &upper, WIDEST * period / steps as f64)?;
     patch.sides = sides(paths, Some(low));
-    Some(patch)
+    add_wall(patch, &lower, &upper, WIDEST * period / steps as f64)
 }
 
 /// The mean height of a ring.
@@ -40,17 +40,24 @@ pub(super) fn sides(rings: &[Path], lower: Option<&Path>) -> Few<f64> {
     rings.iter().map(|ring| f64::from(if is_lower(ring) { ring.winding[0] } else { -ring.winding[0] })).collect()
 }
 
-/// The triangles between two chains, where both run towards growing u and none is wider than `widest`.
-pub(super) fn wall(uv: &[Uv], lower: &[u32], upper: &[u32], widest: f64) -> Option<Vec<[u32; 3]>> {
-    let rising = |chain: &[u32]| chain.windows(2).all(|w| uv[w[1] as usize][0] >= uv[w[0] as usize][0]);
-    let around: Vec<Point2> = lower.iter().chain(upper.iter().rev()).map(|&i| uv[i as usize].into()).collect();
-    let area = polygon::signed_area(&around);
-    if rising(lower) && rising(upper) && area > 0.0 { zip(uv, lower, upper, area, widest) } else { None }
+/// Points of a patch that follow each other.
+pub(super) type Chain = Range<u32>;
+
+/// Adds the triangles between two chains, where both run towards growing u and none is wider than `widest`.
+pub(super) fn add_wall(patch: &mut Patch, lower: &Chain, upper: &Chain, widest: f64) -> Option<()> {
+    let uv = |chain: &Chain| &patch.uv[chain.start as usize..chain.end as usize];
+    let rising = |chain: &[Uv]| chain.windows(2).all(|w| w[1][0] >= w[0][0]);
+    let around = uv(lower).iter().chain(uv(upper).iter().rev()).copied();
+    let area = signed_area(around);
+    if !(rising(uv(lower)) && rising(uv(upper)) && area > 0.0) {
+        return None;
+    }
+    zip(&patch.uv, lower.clone(), upper.clone(), area, widest, &mut patch.triangles)
 }
 
 /// Adds a ring once round in the direction of growing u, the first point repeated at the end; it starts with the
 /// point nearest to `start`.
-pub(super) fn add_ring(patch: &mut Patch, path: &Path, period: f64, start: f64) -> Vec<u32> {
+pub(super) fn add_ring(patch: &mut Patch, path: &Path, period: f64, start: f64) -> Chain {
     let n = path.uv.len();
     let beyond = |i: usize| path.uv[i][0] - start - period * ((path.uv[i][0] - start) / period).round();
     let first = (0..n).min_by(|&i, &j| beyond(i).abs().total_cmp(&beyond(j).abs())).unwrap_or(0);
@@ -64,7 +71,7 @@ pub(super) fn add_ring(patch: &mut Patch, path: &Path, period: f64, start: f64) 
         patch.points.push(path.points[i % n]);
         patch.uv.push([u + shift + if i >= n { turn } else { 0.0 }, v]);
     }
-    (from..from + n as u32 + 1).collect()
+    from..from + n as u32 + 1
 }
 
 #[cfg(test)]
@@ -81,8 +88,7 @@ mod tests {
             winding: [winding, 0],
         };
         let mut patch = Patch::default();
-        let places =
-            |patch: &Patch, chain: Vec<u32>| chain.iter().map(|&i| patch.uv[i as usize][0]).collect::<Vec<_>>();
+        let places = |patch: &Patch, chain: Chain| chain.map(|i| patch.uv[i as usize][0]).collect::<Vec<_>>();
         let chain = add_ring(&mut patch, &ring([0.0, 1.0, 2.0, 3.0], 1), 4.0, 2.25);
         assert_eq!(places(&patch, chain), [2.0, 3.0, 4.0, 5.0, 6.0]);
         let chain = add_ring(&mut patch, &ring([7.5, 6.5, 5.5, 4.5], -1), 4.0, 2.25);

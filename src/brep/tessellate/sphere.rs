@@ -5,10 +5,9 @@ use crate::geometry::{Point, Vector, any_perpendicular};
 
 /// The placement whose z axis keeps the largest angle from all border points, out of the given axes and the
 /// diagonals between them; the given one stays where it is nearly as good.
-pub(super) fn turned_away(placement: &Placement, border: &[[Vec<Point>; 2]]) -> Placement {
-    let points = border.iter().flat_map(|line| &line[0]);
+pub(super) fn turned_away(placement: &Placement, border: &[Point]) -> Placement {
     let directions: Vec<Vector> =
-        points.filter_map(|p| (p - placement.origin).try_normalize(f64::MIN_POSITIVE)).collect();
+        border.iter().filter_map(|p| (p - placement.origin).try_normalize(f64::MIN_POSITIVE)).collect();
     let clearance = |axis: &Vector| {
         let nearest = directions.iter().map(|d| d.dot(axis).abs()).fold(0.0, f64::max);
         (1.0 - nearest * nearest).max(0.0).sqrt()

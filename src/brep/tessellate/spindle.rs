@@ -17,10 +17,10 @@ pub(super) struct Part {
 
 impl Part {
     /// The part that the border lies on, the outer one where there is no border; `None` for other surfaces.
-    pub fn of(surface: &Surface, border: &[[Vec<Point>; 2]]) -> Option<Self> {
+    pub fn of(surface: &Surface, border: &[Point]) -> Option<Self> {
         let &Surface::Torus { placement, major, minor } = surface else { return None };
         let [outer, inner] = [false, true].map(|inner| Self { placement, major, minor, inner });
-        let off = |part: &Self| border.iter().flat_map(|line| &line[0]).map(|p| part.distance(p)).sum::<f64>();
+        let off = |part: &Self| border.iter().map(|p| part.distance(p)).sum::<f64>();
         (minor > major).then(|| if off(&inner) < off(&outer) { inner } else { outer })
     }
 
@@ -65,7 +65,7 @@ mod tests {
         let torus = Surface::Torus { placement, major: 1.0, minor: 2.0 };
         for uv in [[0.3, 1.9], [2.0, -1.0], [-1.0, 2.5], [1.0, PI]] {
             let p = torus.point(uv[0], uv[1]);
-            let part = Part::of(&torus, &[[vec![p], Vec::new()]]).unwrap();
+            let part = Part::of(&torus, &[p]).unwrap();
             assert_eq!(part.inner, uv[1].cos() < -0.5);
             let [u, v] = part.project(&p);
             assert!((torus.point(u, v) - p).norm() < 1e-12 && (v - uv[1]).abs() < 1e-12, "{u} {v} for {uv:?}");

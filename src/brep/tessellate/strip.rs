@@ -23,18 +23,22 @@ const CLEARANCE: f64 = 1e-3;
 const MAX_CANDIDATES: usize = 200;
 
 /// See the module; `None` where the paths bound nothing finite.
-pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness, quick: bool) -> Option<Patch> {
+pub(super) fn triangulate(
+    chart: &Chart,
+    paths: &[Path],
+    fineness: &Fineness,
+    quick: bool,
+    patch: &mut Patch,
+) -> Option<()> {
     let along = (0..2)
         .find(|&a| paths.iter().any(|p| p.winding[a] != 0))
         .or_else(|| (0..2).find(|&a| chart.periods[a].is_some()))?;
     chart.periods[along]?;
-    if quick && let Some(patch) = between_two_rings(chart, paths, fineness) {
-        return Some(patch);
+    if quick && between_two_rings(chart, paths, fineness, patch).is_some() {
+        return Some(());
     }
-    if (quick || !chart.surface.is_ruled_along_v())
-        && let Some(patch) = band(chart, paths, fineness)
-    {
-        return Some(patch);
+    if (quick || !chart.surface.is_ruled_along_v()) && band(chart, paths, fineness, patch).is_some() {
+        return Some(());
     }
     let mut strip = Strip::new(chart, along, paths)?;
     paths.iter().for_each(|p| strip.wrap_path(chart, p));
@@ -48,7 +52,7 @@ pub(super) fn triangulate(chart: &Chart, paths: &mut [Path], fineness: &Fineness
     let mut grid = Grid::new(rectangle, cells);
     strip.pieces.iter().for_each(|[a, b]| grid.block(a, b));
     (0..2).filter(|&axis| strip.cuts[axis].is_some()).for_each(|axis| grid.join_sides(axis));
-    let mut patch = std::mem::take(&mut strip.patch);
+    *patch = std::mem::take(&mut strip.patch);
     let [low, high] = strip.open_ends();
     let held = |uv: &Uv| uv[1 - along] > low && uv[1 - along] < high;
     grid.nodes(true).filter(held).for_each(|uv| patch.add(chart, uv));

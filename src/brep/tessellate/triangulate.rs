@@ -4,7 +4,7 @@
 use earcut::Earcut;
 use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::collections::VecDeque;
 
 use super::chart::Uv;
@@ -22,35 +22,58 @@ const FLAT: f64 = 1e-6;
 /// How much the triangles' area may differ from the polygon's, as a share.
 const AREA_SLACK: f64 = 1e-6;
 
-thread_local! {
-    /// Room to cut ears in, kept from one polygon of the thread to the next.
-    static EARCUT: RefCell<Earcut<f64>> = RefCell::new(Earcut::new());
+/// What polygons are cut in, one after the other.
+#[derive(Default)]
+pub(super) struct Room {
+    earcut: Earcut<f64>,
+    holes: Vec<u32>,
+    corners: Vec<u32>,
+    pub chains: Chains,
+}
+
+/// A ring and the two chains that it is cut into.
+#[derive(Default)]
+pub(super) struct Chains {
+    pub ring: Vec<u32>,
+    pub lower: Vec<u32>,
+    pub upper: Vec<u32>,
+    /// The ring's points, where the chains run along v.
+    pub turned: Vec<Uv>,
 }
 
 /// Triangles of a polygon with holes, all counter-clockwise; `rings`: where each ring starts, the outer one first,
 /// `area`: what they must add up to. `None` where the rings cut each other and the areas differ.
-pub(super) fn ears(points: &[Uv], rings: &[usize], area: f64) -> Option<Vec<[u32; 3]>> {
+pub(super) fn ears(
+    points: &[Uv],
+    rings: &[usize],
+    area: f64,
+    room: &mut Room,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Option<()> {
+    triangles.clear();
     if points.len() > MOST_EARS {
         return None;
     }
     if let (Ok(corners), [_]) = (points.try_into(), rings)
         && let Some(halves) = halves(corners)
     {
-        return Some(halves.to_vec());
+        triangles.extend(halves);
+        return Some(());
     }
-    let holes: Vec<u32> = rings.iter().skip(1).map(|&r| r as u32).collect();
-    let mut indices: Vec<u32> = Vec::with_capacity(3 * points.len());
-    EARCUT.with_borrow_mut(|ears| ears.earcut(points.iter().copied(), &holes, &mut indices));
-    let mut triangles: Vec<[u32; 3]> = indices.as_chunks().0.to_vec();
+    let Room { earcut, holes, corners, .. } = room;
+    holes.clear();
+    holes.extend(rings.iter().skip(1).map(|&r| r as u32));
+    earcut.earcut(points.iter().copied(), holes, corners);
+    triangles.extend_from_slice(corners.as_chunks().0);
     let mut sum = 0.0;
-    for t in &mut triangles {
+    for t in triangles {
         let twice = doubled_area(points, t);
         if twice < 0.0 {
             t.swap(1, 2);
         }
         sum += 0.5 * twice.abs();
     }
-    ((sum - area).abs() <= AREA_SLACK * area).then_some(triangles)
+    ((sum - area).abs() <= AREA_SLACK * area).then_some(())
 }
 
 /// The halves of a convex quadrilateral, cut as the ears would be.
@@ -72,22 +95,29 @@ pub(super) fn doubled_area(points: &[Uv], [a, b, c]: &[u32; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Triangles between a lower and an upper chain, both with growing u. `None` where one of them turns out clockwise,
-/// wider than `widest` in u, or the areas do not add up to `area`.
-pub(super) fn zip(points: &[Uv], lower: &[u32], upper: &[u32], area: f64, widest: f64) -> Option<Vec<[u32; 3]>> {
+/// Adds the triangles between a lower and an upper chain, both with growing u. `None` where one of them turns out
+/// clockwise, wider than `widest` in u, or the areas do not add up to `area`.
+pub(super) fn zip(
+    points: &[Uv],
+    mut lower: impl Iterator<Item = u32>,
+    mut upper: impl Iterator<Item = u32>,
+    area: f64,
+    widest: f64,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Option<()> {
     let u = |i: u32| points[i as usize][0];
-    let (mut i, mut j) = (0, 0);
-    let mut triangles = Vec::with_capacity(lower.len() + upper.len());
+    let mut ends = [lower.next()?, upper.next()?];
+    let mut next = [lower.next(), upper.next()];
     let mut sum = 0.0;
-    while i + 1 < lower.len() || j + 1 < upper.len() {
-        let lower_next = j + 1 >= upper.len() || (i + 1 < lower.len() && u(lower[i + 1]) <= u(upper[j + 1]));
-        let third = if lower_next { lower[i + 1] } else { upper[j + 1] };
-        let triangle = [lower[i], third, upper[j]];
-        if lower_next {
-            i += 1;
-        } else {
-            j += 1;
-        }
+    loop {
+        let side = match next {
+            [Some(p), Some(q)] => usize::from(u(p) > u(q)),
+            [p, _] => usize::from(p.is_none()),
+        };
+        let Some(third) = next[side] else { break };
+        let triangle = [ends[0], third, ends[1]];
+        ends[side] = third;
+        next[side] = if side == 0 { lower.next() } else { upper.next() };
         if triangle[0] == triangle[2] || triangle[0] == triangle[1] || triangle[1] == triangle[2] {
             continue;
         }
@@ -99,7 +129,7 @@ pub(super) fn zip(points: &[Uv], lower: &[u32], upper: &[u32], area: f64, widest
         sum += 0.5 * twice;
         triangles.push(triangle);
     }
-    ((sum - area).abs() <= AREA_SLACK * area).then_some(triangles)
+    ((sum - area).abs() <= AREA_SLACK * area).then_some(())
 }
 
 struct Site {
@@ -221,6 +251,12 @@ fn regions(mesh: &Delaunay, added: Vec<Uv>) -> Cut {
 mod tests {
     use super::*;
 
+    fn eared(points: &[Uv], rings: &[usize], area: f64) -> usize {
+        let mut triangles = Vec::new();
+        ears(points, rings, area, &mut Room::default(), &mut triangles).unwrap();
+        triangles.len()
+    }
+
     #[test]
     fn a_square_with_a_square_hole_is_cut_into_two_regions() {
         let square = |a: f64| [[-a, -a], [a, -a], [a, a], [-a, a]];
@@ -235,7 +271,7 @@ mod tests {
         let mut areas: Vec<f64> = (0..cut.largest.len() as u32).map(area).collect();
         areas.sort_by(f64::total_cmp);
         assert_eq!(areas, [4.0, 12.0]);
-        assert_eq!(ears(&points, &[0, 4], 12.0).unwrap().len(), 8);
+        assert_eq!(eared(&points, &[0, 4], 12.0), 8);
     }
 
     #[test]
@@ -248,7 +284,7 @@ mod tests {
             Earcut::new().earcut(corners.iter().copied(), &[], &mut cut);
             assert_eq!(halves(&corners).unwrap().as_flattened(), cut);
             // Half of 0 + 10 + 8 + 0, the cross products of neighbours.
-            assert_eq!(ears(&corners, &[0], 9.0).unwrap().len(), 2);
+            assert_eq!(eared(&corners, &[0], 9.0), 2);
         }
         assert_eq!(halves(&[[0.0, 0.0], [2.0, 0.0], [0.5, 0.5], [0.0, 2.0]]), None, "a dart");
         assert_eq!(halves(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]), None, "a bow");
@@ -266,8 +302,9 @@ mod tests {
     #[test]
     fn chains_are_zipped() {
         let points = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [2.0, 1.0]];
-        let triangles = zip(&points, &[0, 1, 2], &[3, 4], 2.0, 3.0).unwrap();
+        let mut triangles = Vec::new();
+        zip(&points, 0..3, 3..5, 2.0, 3.0, &mut triangles).unwrap();
         assert_eq!(triangles, [[0, 1, 3], [1, 2, 3], [2, 4, 3]]);
-        assert!(zip(&points, &[0, 1, 2], &[3, 4], 2.0, 1.0).is_none(), "triangles too wide");
+        assert!(zip(&points, 0..3, 3..5, 2.0, 1.0, &mut triangles).is_none(), "triangles too wide");
     }
 }
