@@ -22,7 +22,6 @@ pub struct Sample {
 pub fn sample_mesh(mesh: &Mesh, count: usize, before: usize) -> Vec<Sample> {
     let areas = doubled_areas(mesh, 0..mesh.triangles.len());
     let mut spread = Spread { before, ..Spread::new(&areas, count) };
-    spread.samples.reserve(count + 1);
     for id in (0..mesh.faces.len()).map(|i| PlacedFaceId(i as u32)) {
         spread.add_face(mesh, id, &areas[mesh.triangles_of(id)]);
     }
@@ -55,7 +54,7 @@ impl Spread {
     /// About `count` samples for triangles of these doubled areas.
     fn new(areas: &[f64], count: usize) -> Self {
         let step = areas.iter().sum::<f64>() / count.max(1) as f64;
-        Self { step, owed: 0.5, before: 0, samples: Vec::new() }
+        Self { step, owed: 0.5, before: 0, samples: Vec::with_capacity(count + 1) }
     }
 
     /// `areas`: the doubled ones of the face's triangles.

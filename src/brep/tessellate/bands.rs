@@ -156,7 +156,7 @@ fn add_row(patch: &mut Patch, chart: &Chart, along: usize, places: &[f64], t: f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::brep::tessellate::integrate::integrate;
+    use crate::brep::tessellate::integrate::{Sides, integrate};
     use crate::brep::{Placement, Surface};
     use crate::geometry::{Point, Vector};
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -180,7 +180,7 @@ mod tests {
     fn area(chart: &Chart, paths: &[Path]) -> Option<f64> {
         let mut patch = Patch::default();
         band(chart, paths, &FINENESS, &mut patch)?;
-        Some(integrate(chart, &patch, paths, &Point::origin(), &mut Vec::new()).area)
+        Some(integrate(chart, &patch, paths, &Point::origin(), &mut Sides::default()).area)
     }
 
     #[test]

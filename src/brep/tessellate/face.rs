@@ -8,7 +8,7 @@ use super::chart::{Chart, Uv};
 use super::domain::{self, Patch};
 use super::edges::{EdgeLines, Fineness};
 use super::fallback::planar_fill;
-use super::integrate::{Integrals, Side, integrate, integrate_triangles};
+use super::integrate::{Integrals, Sides, integrate, integrate_triangles};
 use super::triangulate::Room;
 use crate::brep::{Face, FaceGeometry, Facets, Model, Surface};
 use crate::cancel::Cancel;
@@ -92,7 +92,7 @@ pub(super) struct Work {
     /// The best patch so far, while a finer one is made.
     other: Patch,
     pub room: Room,
-    sides: Vec<Side>,
+    sides: Sides,
 }
 
 impl Meshes {

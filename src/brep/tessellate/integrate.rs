@@ -42,13 +42,13 @@ impl Integrals {
     }
 }
 
-/// Integrates over a patch and the slivers along its paths; `room` is for the sides of its triangles.
+/// Integrates over a patch and the slivers along its paths.
 pub(super) fn integrate(
     chart: &Chart,
     patch: &Patch,
     paths: &[Path],
     reference: &Point,
-    room: &mut Vec<Side>,
+    sides: &mut Sides,
 ) -> Integrals {
     let mut sum = Integrals::default();
     let sense = if chart.flipped { -1.0 } else { 1.0 };
@@ -84,8 +84,8 @@ pub(super) fn integrate(
             })
         }
         _ => {
-            fill_with_sides(patch, areas, room);
-            room.iter().for_each(|(side, area)| at(middle(patch, *side), *area));
+            sides.fill(patch, areas);
+            sides.all.iter().for_each(|(side, area)| at(middle(patch, *side), *area));
         }
     }
     for (path, side) in paths.iter().zip(&patch.sides) {
@@ -106,22 +106,49 @@ fn mix(patch: &Patch, triangle: &[u32; 3], w: [f64; 3]) -> Uv {
 }
 
 /// The ends of a side, the smaller index first, and a third of the area of the triangles beside it.
-pub(super) type Side = ([u32; 2], f64);
+type Side = ([u32; 2], f64);
 
-/// Each side once.
-fn fill_with_sides(patch: &Patch, areas: impl Iterator<Item = f64>, sides: &mut Vec<Side>) {
-    sides.clear();
-    sides.reserve(3 * patch.triangles.len());
-    for ([a, b, c], area) in patch.triangles.iter().zip(areas) {
-        let ordered = [[a, b], [b, c], [c, a]].map(|[a, b]| [*a.min(b), *a.max(b)]);
-        sides.extend(ordered.map(|side| (side, area / 3.0)));
+/// The sides of the triangles of one patch after the other.
+#[derive(Default)]
+pub(super) struct Sides {
+    all: Vec<Side>,
+    /// Where the sides that begin at each point end.
+    ends: Vec<usize>,
+}
+
+impl Sides {
+    /// Finds each side of a patch once, in the order of their ends.
+    fn fill(&mut self, patch: &Patch, areas: impl Iterator<Item = f64>) {
+        let Self { all, ends } = self;
+        let ordered = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+        // Counted by their first ends: those of one point are so few that they are soon in order.
+        ends.clear();
+        ends.resize(patch.uv.len(), 0);
+        patch.triangles.iter().flat_map(|t| ordered(*t)).for_each(|[a, _]| ends[a as usize] += 1);
+        let mut start = 0;
+        for end in &mut *ends {
+            start += std::mem::replace(end, start);
+        }
+        all.clear();
+        all.resize(start, ([0; 2], 0.0));
+        for (triangle, area) in patch.triangles.iter().zip(areas) {
+            for side in ordered(*triangle) {
+                let end = &mut ends[side[0] as usize];
+                all[*end] = (side, area / 3.0);
+                *end += 1;
+            }
+        }
+        let mut start = 0;
+        for &end in &*ends {
+            all[start..end].sort_unstable_by_key(|([_, b], _)| *b);
+            start = end;
+        }
+        all.dedup_by(|next, first| {
+            let same = next.0 == first.0;
+            first.1 += if same { next.1 } else { 0.0 };
+            same
+        });
     }
-    sides.sort_unstable_by_key(|([a, b], _)| u64::from(*a) << 32 | u64::from(*b));
-    sides.dedup_by(|next, first| {
-        let same = next.0 == first.0;
-        first.1 += if same { next.1 } else { 0.0 };
-        same
-    });
 }
 
 fn middle(patch: &Patch, side: [u32; 2]) -> Uv {

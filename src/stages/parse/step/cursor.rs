@@ -93,6 +93,7 @@ impl<'a, 'r> Cursor<'a, 'r> {
     }
 
     /// Behind white space and a comma.
+    #[inline]
     fn finish_value(&mut self) {
         self.at = skip_space(self.bytes, self.at);
         if self.bytes.get(self.at) == Some(&b',') {
@@ -208,8 +209,7 @@ impl<'a, 'r> Cursor<'a, 'r> {
         if !rest.first().is_some_and(|b| b.is_ascii_digit() || matches!(b, b'-' | b'.')) {
             return Err(self.fault("a number was expected"));
         }
-        let parsed: Result<(f64, usize), _> = fast_float2::parse_partial(rest);
-        let (value, length) = parsed.map_err(|_| self.fault("a bad number"))?;
+        let (value, length): (f64, usize) = fast_float2::parse_partial(rest).map_err(|_| self.fault("a bad number"))?;
         if !value.is_finite() {
             return Err(self.fault("a number that is not finite"));
         }

@@ -51,6 +51,7 @@ impl<'a> File<'a> {
     ///
     /// # Errors
     /// As [`Self::find`].
+    #[inline]
     pub fn record(&self, id: u64) -> Read<Record<'a>> {
         Ok(self.record_of(self.find(id)?))
     }
@@ -84,6 +85,7 @@ impl<'a> File<'a> {
     }
 
     /// The record of a table entry.
+    #[inline]
     pub fn record_of(&self, entry: Entry) -> Record<'a> {
         let (kind, start) = (entry.kind(), entry.start());
         let parts = if kind == Kind::Complex { self.parts(start) } else { Vec::new() };
