@@ -192,7 +192,7 @@ fn mirror_of(
         (mirror::plane_of(&isometry, options.residual)?, squared)
     } else if !mirror::may_fit(from, to, most) {
         return None;
-    } else if let Some(plane) = mirror::halfway(from, to, EXACT * size, options.eigen_gap) {
+    } else if let Some(plane) = mirror::halfway(from, to, HALFWAY * size, options.eigen_gap) {
         return Some(Candidate { halfway: true, ..candidate(plane, 0.0, source) });
     } else {
         let fit = mirror::fit(from, to)?;
@@ -200,6 +200,9 @@ fn mirror_of(
     };
     (squared <= most).then(|| candidate(plane, squared.max(0.0).sqrt(), source))
 }
+
+/// Corners that a plane halfway mirrors to within this share of D need no fit for a vote: files are not more precise.
+const HALFWAY: f64 = 1e-6;
 
 /// The kinds of direct isometry.
 #[derive(Clone, Copy, Debug, PartialEq)]

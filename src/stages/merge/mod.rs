@@ -166,6 +166,8 @@ pub struct Symmetries {
     pub axes: Vec<Axis>,
     /// Faces that direct isometries map onto others.
     pub repeats: Repeats,
+    /// Of the surface, mm^2: the stages to come look for its axes, too.
+    pub covariance: Matrix,
 }
 
 /// Finds the dominant symmetry.
@@ -222,7 +224,7 @@ impl Merger<'_> {
         let label = self.label(best);
         let mut planes = if label == Label::None { Vec::new() } else { planes };
         images.add_to(&mut planes)?;
-        Ok(Symmetries { label, planes, axes, repeats: self.validated.repeats })
+        Ok(Symmetries { label, planes, axes, repeats: self.validated.repeats, covariance: self.covariance })
     }
 
     fn label(&self, coverage: f64) -> Label {

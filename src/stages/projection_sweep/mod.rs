@@ -23,7 +23,7 @@ mod slices;
 mod widths;
 mod wire;
 
-use crate::alignment::{cpca, npca};
+use crate::alignment::npca;
 use crate::cancel::Cancel;
 use crate::geometry::{Frame, Vector};
 use crate::stages::merge::Symmetries;
@@ -193,12 +193,12 @@ pub fn projection_sweep(
         return Err(ModelError::new(Stage::ProjectionSweep, "the model has no extent"));
     }
     let cancelled = |c| ModelError::cancelled(Stage::ProjectionSweep, c);
-    let covariance = cpca::covariance(&parsed.mesh);
-    let reference = reference::find(parsed, symmetries, &covariance, options, cancel).map_err(cancelled)?;
+    let covariance = &symmetries.covariance;
+    let reference = reference::find(parsed, symmetries, options, cancel).map_err(cancelled)?;
     let table = if options.start_on_model {
-        Turntable::on_model(&parsed.mesh, &parsed.measures, &covariance, &reference.axis)
+        Turntable::on_model(&parsed.mesh, &parsed.measures, covariance, &reference.axis)
     } else {
-        Turntable::arbitrary(&parsed.measures, &reference.axis).with_largest_variance(&parsed.mesh, &covariance)
+        Turntable::arbitrary(&parsed.measures, &reference.axis).with_largest_variance(&parsed.mesh, covariance)
     };
     let swept = turn(parsed, &table, options, cancel).map_err(cancelled)?;
     let second = table.direction(swept.choice.angle);

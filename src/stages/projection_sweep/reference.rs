@@ -19,16 +19,14 @@ pub(super) struct Reference {
     pub source: Source,
 }
 
-/// The normal of the dominant symmetry, else the axis of the fallback frame with the smallest shadow. `covariance`: of
-/// the surface's points.
+/// The normal of the dominant symmetry, else the axis of the fallback frame with the smallest shadow.
 pub(super) fn find(
     parsed: &Parsed,
     symmetries: &Symmetries,
-    covariance: &Matrix,
     options: &Options,
     cancel: &Cancel,
 ) -> Result<Reference, Cancelled> {
-    let centroid = parsed.measures.centroid;
+    let (centroid, covariance) = (parsed.measures.centroid, &symmetries.covariance);
     let dominant = symmetries.planes.first().filter(|p| p.coverage >= options.min_coverage);
     if let Some(found) = dominant.filter(|_| symmetries.label != Label::None) {
         let plane = &found.plane;

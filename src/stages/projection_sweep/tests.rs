@@ -1,7 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::alignment::shapes;
+use crate::alignment::{cpca, shapes};
 use crate::brep::{Mesh, Model};
 use crate::geometry::{Plane, Point};
 use crate::stages::merge::{Label, SymmetryPlane};
@@ -11,9 +11,9 @@ fn parsed(mesh: Mesh) -> Parsed {
     Parsed { model: Model::empty(), mesh, measures, skipped: Vec::new(), warnings: Vec::new() }
 }
 
-fn symmetric(normal: Vector, through: &Point) -> Symmetries {
+fn symmetric(parsed: &Parsed, normal: Vector) -> Symmetries {
     let plane = SymmetryPlane {
-        plane: Plane::through(through, &normal),
+        plane: Plane::through(&parsed.measures.centroid, &normal),
         coverage: 1.0,
         error: 0.0,
         residual: 0.0,
@@ -22,16 +22,17 @@ fn symmetric(normal: Vector, through: &Point) -> Symmetries {
         source: crate::stages::isometry::Source::Corners,
         correlation: None,
     };
-    Symmetries { label: Label::Exact, planes: vec![plane], axes: Vec::new(), repeats: Default::default() }
+    Symmetries { label: Label::Exact, planes: vec![plane], ..none(parsed) }
 }
 
-fn none() -> Symmetries {
-    Symmetries { label: Label::None, planes: Vec::new(), axes: Vec::new(), repeats: Default::default() }
+fn none(parsed: &Parsed) -> Symmetries {
+    let covariance = cpca::covariance(&parsed.mesh);
+    Symmetries { label: Label::None, planes: Vec::new(), axes: Vec::new(), repeats: Default::default(), covariance }
 }
 
 fn sweep(mesh: Mesh, normal: Vector, options: &Options) -> CanonicalFrame {
     let parsed = parsed(mesh);
-    let symmetries = symmetric(normal, &parsed.measures.centroid);
+    let symmetries = symmetric(&parsed, normal);
     projection_sweep(&parsed, &symmetries, options, &Cancel::new()).unwrap()
 }
 
@@ -99,7 +100,7 @@ fn a_hole_through_a_slice_casts_light() {
 fn without_symmetry_a_rectilinear_model_gets_the_rectilinear_frame() {
     let turn = shapes::rotation(0.4, 1.2, 0.8);
     let parsed = parsed(shapes::turned(&shapes::letter_f(0.7), &turn));
-    let found = projection_sweep(&parsed, &none(), &Options::default(), &Cancel::new()).unwrap();
+    let found = projection_sweep(&parsed, &none(&parsed), &Options::default(), &Cancel::new()).unwrap();
     assert_eq!(found.source, Source::Rectilinearity);
     // Seen along its height it is smallest, then along its width.
     assert!(found.frame.axes[0].dot(&turn.column(1)).abs() > 1.0 - 1e-6, "{:?}", found.frame);
@@ -109,7 +110,7 @@ fn without_symmetry_a_rectilinear_model_gets_the_rectilinear_frame() {
 #[test]
 fn without_symmetry_a_round_model_gets_continuous_pca() {
     let parsed = parsed(shapes::ellipsoid([1.0, 2.0, 3.0], 24));
-    let found = projection_sweep(&parsed, &none(), &Options::default(), &Cancel::new()).unwrap();
+    let found = projection_sweep(&parsed, &none(&parsed), &Options::default(), &Cancel::new()).unwrap();
     assert_eq!(found.source, Source::Cpca);
     assert!(found.frame.axes[0].z.abs() > 0.99999, "{:?}", found.frame);
 }
@@ -117,7 +118,7 @@ fn without_symmetry_a_round_model_gets_continuous_pca() {
 #[test]
 fn a_model_without_extent_is_an_error() {
     let parsed = parsed(Mesh::default());
-    let error = projection_sweep(&parsed, &none(), &Options::default(), &Cancel::new()).unwrap_err();
+    let error = projection_sweep(&parsed, &none(&parsed), &Options::default(), &Cancel::new()).unwrap_err();
     assert_eq!(error.stage, Stage::ProjectionSweep);
 }
 
@@ -126,7 +127,7 @@ fn a_cancelled_sweep_stops() {
     let parsed = parsed(shapes::cuboid(1.0, 2.0, 4.0));
     let cancel = Cancel::new();
     cancel.cancel();
-    assert!(projection_sweep(&parsed, &none(), &Options::default(), &cancel).is_err());
+    assert!(projection_sweep(&parsed, &none(&parsed), &Options::default(), &cancel).is_err());
 }
 
 proptest! {
