@@ -42,7 +42,7 @@ impl Isometry {
     /// Whether it maps every image back to where that came from, up to `tolerance` (mm): reflections do, and half turns.
     pub fn is_involution(&self, tolerance: f64) -> bool {
         let there_and_back = self.rotation * self.translation + self.translation;
-        (self.rotation - self.rotation.transpose()).amax() <= 1e-12 && there_and_back.amax() <= tolerance
+        (self.rotation - self.rotation.transpose()).amax() <= 1e-12 && there_and_back.norm() <= tolerance
     }
 
     /// The image of a point.
@@ -63,7 +63,7 @@ impl Isometry {
         let rotation = b? * a?.transpose();
         let translation = to[corners[0]].coords - rotation * from[corners[0]].coords;
         let moved = Self { rotation, translation, chirality: Chirality::Proper };
-        from.iter().zip(to).all(|(p, q)| (moved.apply(p) - q).amax() <= tolerance).then_some(moved)
+        from.iter().zip(to).all(|(p, q)| (moved.apply(p) - q).norm_squared() <= tolerance * tolerance).then_some(moved)
     }
 
     /// The isometry of the asked chirality that takes `from` to `to` with the least squared error, scale 1

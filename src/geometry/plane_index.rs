@@ -1,6 +1,7 @@
 //! Planes found again by nearness, in constant time.
 
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use super::cells::floor;
 use super::{Plane, Point};
@@ -20,7 +21,7 @@ pub struct PlaneIndex {
     /// Cells to the mm of distance.
     per_mm: f64,
     planes: Vec<Plane>,
-    cells: FxHashMap<[i32; 4], Vec<u32>>,
+    cells: FxHashMap<[i32; 4], SmallVec<[u32; 2]>>,
 }
 
 impl PlaneIndex {

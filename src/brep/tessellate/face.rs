@@ -47,7 +47,8 @@ pub(super) struct Context<'a> {
     pub reference: Vec<Point>,
 }
 
-/// The tessellated faces of a model, or some of them, in the coordinates of their bodies.
+/// The tessellated faces of a model, or some of them, in the coordinates of their bodies. What a face had before it was
+/// made again stays among the points and triangles, of no use, until the mesh is put together.
 #[derive(Default)]
 pub(super) struct Meshes {
     pub points: Vec<Point>,
@@ -153,10 +154,16 @@ fn trimmed(
     if work.paths.is_empty() && !chart.is_closed() {
         add_rim(&chart, surface, &mut work.paths).ok_or("the face has no bounds and its surface is infinite")?;
     }
-    let mut best = patch(&chart, &context.fineness, true, reference, work)?;
-    if matches!(*chart.surface, Surface::Plane(_)) {
-        return Ok(best);
-    }
+    let first = patch(&chart, &context.fineness, true, reference, work)?;
+    Ok(if matches!(*chart.surface, Surface::Plane(_)) {
+        first
+    } else {
+        made_again(context, &chart, first, reference, work)
+    })
+}
+
+/// Makes a face again while its error is too large and finer triangles help.
+fn made_again(context: &Context, chart: &Chart, mut best: Measured, reference: &Point, work: &mut Work) -> Measured {
     let mut fineness = context.fineness;
     let mut off = error(&best, context);
     for _ in 0..REFINEMENTS {
@@ -167,7 +174,7 @@ fn trimmed(
         let share = (AIM / off).max(FINER);
         fineness = Fineness { deflection: share * fineness.deflection, angle: share.sqrt() * fineness.angle };
         std::mem::swap(&mut work.patch, &mut work.other);
-        let finer = patch(&chart, &fineness, false, reference, work).map(|finer| (error(&finer, context), finer));
+        let finer = patch(chart, &fineness, false, reference, work).map(|finer| (error(&finer, context), finer));
         match finer {
             Ok((finer_off, finer)) if finer_off <= (HELPS * off).max(1.0) => (best, off) = (finer, finer_off),
             worse => {
@@ -179,7 +186,7 @@ fn trimmed(
             }
         }
     }
-    Ok(best)
+    best
 }
 
 /// Triangulates what the paths bound, and measures it.

@@ -52,21 +52,9 @@ pub(super) fn integrate(
 ) -> Integrals {
     let mut sum = Integrals::default();
     let sense = if chart.flipped { -1.0 } else { 1.0 };
-    // A plane has one normal.
-    let plane = match &*chart.surface {
-        Surface::Plane(placement) => Some((placement, placement.x.cross(&placement.y))),
-        _ => None,
-    };
-    let plane = plane.map(|(placement, normal)| (placement, normal, normal.norm()));
+    let piece_at = piece_of(chart);
     let mut at = |uv: Uv, weight: f64| {
-        let (point, normal, length) = match plane {
-            Some((placement, normal, length)) => (placement.point(uv[0], uv[1], 0.0), normal, length),
-            None => {
-                let jet = chart.tangents(uv);
-                let normal = jet.normal();
-                (jet.point, normal, normal.norm())
-            }
-        };
+        let (point, normal, length) = piece_at(uv);
         let mut one = Integrals::default();
         one.add(&(point - reference), (&normal, length), weight);
         sum.area += one.area;
@@ -97,6 +85,23 @@ pub(super) fn integrate(
         }
     }
     sum
+}
+
+/// Tells the point, the normal and its length at a place; a plane has one normal.
+fn piece_of(chart: &Chart) -> impl Fn(Uv) -> (Point, Vector, f64) {
+    let plane = match &*chart.surface {
+        Surface::Plane(placement) => Some((placement, placement.x.cross(&placement.y))),
+        _ => None,
+    };
+    let plane = plane.map(|(placement, normal)| (placement, normal, normal.norm()));
+    move |uv| match plane {
+        Some((placement, normal, length)) => (placement.point(uv[0], uv[1], 0.0), normal, length),
+        None => {
+            let jet = chart.tangents(uv);
+            let normal = jet.normal();
+            (jet.point, normal, normal.norm())
+        }
+    }
 }
 
 /// The point of a triangle with these weights of its corners.

@@ -169,14 +169,14 @@ fn face_meshes(context: &Context, most: usize) -> Result<Meshes, Cancelled> {
         if faces.len() < PARALLEL_FACES {
             add_meshes(context, (batch, references), &mut scratch, &mut meshes)?;
         } else {
-            let of_thread = |part| {
+            let of_thread = |scratch: &mut Scratch, part| {
                 account.within(|| {
                     let mut made = Meshes::default();
-                    add_meshes(context, part, &mut Scratch::default(), &mut made).map(|()| made)
+                    add_meshes(context, part, scratch, &mut made).map(|()| made)
                 })
             };
             let parts = batch.par_chunks(PART).zip(references.par_chunks(PART));
-            let made: Vec<Meshes> = parts.map(of_thread).collect::<Result<_, _>>()?;
+            let made: Vec<Meshes> = parts.map_init(Scratch::default, of_thread).collect::<Result<_, _>>()?;
             made.into_iter().for_each(|made| meshes.append(made));
         }
         if meshes.triangles.len() > most {

@@ -353,6 +353,22 @@ mod tests {
     }
 
     #[test]
+    fn neighbours_of_one_number_share_a_leaf_and_are_all_found() {
+        // Rows of twelve cells, each row a face; the last triangle is of the first face and far away.
+        let mut triangles: Vec<_> = sheet(12).into_iter().map(|(t, id)| (t, id / 12)).collect();
+        triangles.push((triangles[0].0.map(|p| p + Vector::new(500.0, 0.0, 90.0)), 0));
+        let tree = Bvh::new(triangles.len(), triangles.clone());
+        assert_eq!(tree.items().len(), 12 * 12 / 4 + 1);
+        let leaves: Vec<_> = tree.nodes.iter().flat_map(|n| &n.children).filter(|c| c.count > 0).collect();
+        assert_eq!(leaves.iter().map(|c| c.count as usize).sum::<usize>(), triangles.len());
+        for (corners, id) in &triangles {
+            let middle = nalgebra::center(&corners[0], &nalgebra::center(&corners[1], &corners[2]));
+            let found = tree.nearest_within(&middle, 0.1, |_| true).unwrap();
+            assert!(found.id == *id && found.squared < 1e-20, "{middle}: {found:?}");
+        }
+    }
+
+    #[test]
     fn triangles_that_are_not_accepted_do_not_count() {
         let tree = Bvh::new(18, sheet(3));
         let p = Point::new(0.1, 0.1, 0.5);

@@ -218,6 +218,13 @@ impl LocalOutlines {
         Self { outlines, faces: Vec::with_capacity(faces), corners, inner: Vec::new() }
     }
 
+    /// Where the faces, corners and inner loops of an outline are.
+    fn ranges(&self, index: usize) -> [Range<usize>; 3] {
+        let starts = index.checked_sub(1).map_or([0; 3], |before| self.outlines[before].ends);
+        let ends = self.outlines[index].ends;
+        std::array::from_fn(|i| starts[i]..ends[i])
+    }
+
     /// One of the outlines in its occurrence; `None` where the mesh has none of its faces. Where several occurrences
     /// share it, `shared` names its body and its number there.
     fn placed(
@@ -229,12 +236,9 @@ impl LocalOutlines {
         shared: Option<(BodyId, u32)>,
     ) -> Option<Outline> {
         let (placement, scale) = (place.placement, place.scale);
-        let outline = &self.outlines[index];
-        let [first_face, first_corner, first_inner] =
-            index.checked_sub(1).map_or([0; 3], |before| self.outlines[before].ends);
-        let [end_face, end_corner, end_inner] = outline.ends;
+        let (outline, [of_faces, of_corners, of_inner]) = (&self.outlines[index], self.ranges(index));
         let mut faces: SmallVec<[PlacedFaceId; 4]> =
-            self.faces[first_face..end_face].iter().filter_map(|&f| places.find(f)).collect();
+            self.faces[of_faces].iter().filter_map(|&f| places.find(f)).collect();
         faces.sort_unstable();
         let area: f64 = faces.iter().map(|f| parsed.mesh.faces[f.index()].area).sum();
         if !(area > 0.0 && area.is_finite()) {
@@ -242,13 +246,12 @@ impl LocalOutlines {
         }
         let moment: Vector =
             faces.iter().map(|f| &parsed.mesh.faces[f.index()]).map(|f| f.centroid.coords * f.area).sum();
-        let mut corners: SmallVec<[Point; 4]> =
-            self.corners[first_corner..end_corner].iter().map(|p| placement.point(p)).collect();
+        let mut corners: SmallVec<[Point; 4]> = self.corners[of_corners].iter().map(|p| placement.point(p)).collect();
         let backwards = outline.runs_backwards(parsed, &faces, place);
         if backwards {
             corners.reverse();
         }
-        let inner = self.inner[first_inner..end_inner].iter();
+        let inner = self.inner[of_inner].iter();
         let inner =
             inner.map(|l| InnerLoop { centroid: placement.point(&l.centroid), length: l.length * scale }).collect();
         let axis = outline

@@ -63,7 +63,7 @@ pub fn halfway(from: &[Point], to: &[Point], tolerance: f64, gap: f64) -> Option
     let (mut across, mut along) = (0.0, 0.0);
     for (p, q) in pairs() {
         let (moved, from_first) = (q - p, p - from[0]);
-        if (plane.reflect(p) - q).amax() > tolerance {
+        if (plane.reflect(p) - q).norm_squared() > tolerance * tolerance {
             return None;
         }
         across += moved.norm_squared();

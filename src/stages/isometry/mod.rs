@@ -3,7 +3,8 @@
 //! In: [`Matches`]. Out: [`Candidates`]: mirror planes with their residual, and how many faces repeat.
 //!
 //! Method: section IV.C. Mirrors are fitted directly as a plane (`mirror`), which is exact and needs no case for
-//! coplanar corners; direct isometries by Umeyama (1991). Beside the pairs, faces without corners vote by the bisector
+//! coplanar corners; direct isometries by Umeyama (1991). Exact images need neither: the plane halfway between them is
+//! a vote, fitted where it comes to stand for others, and three corners tell a turn. Beside the pairs, faces without corners vote by the bisector
 //! planes of their centroids and by their axes (`axes`), and single faces by their own symmetries.
 //!
 //! Cost: linear in the pairs and their corners. It does not promise that the surfaces between the corners agree.
@@ -170,13 +171,9 @@ fn mirror_of(
         return None;
     }
     let area = if single { a.area } else { a.area + b.area };
-    let candidate = |plane: Plane, residual: f64, source: Source| Candidate {
-        plane,
-        residual,
-        weight: area * pair.weight,
-        source,
-        pair: Some(index),
-        halfway: false,
+    let candidate = |plane: Plane, residual: f64, source: Source| {
+        let weight = area * pair.weight;
+        Candidate { plane, residual, weight, source, pair: Some(index), halfway: false }
     };
     if pair.correspondence == Correspondence::Centroids {
         let plane = if options.cornerless { axes::bisector(a, b, size)? } else { return None };
@@ -187,22 +184,26 @@ fn mirror_of(
     }
     let source = if single { Source::SingleFace } else { Source::Corners };
     let most = (options.residual * size).powi(2);
-    let (plane, squared) = if options.umeyama {
-        let (isometry, squared) = Isometry::fit(from, to, Chirality::Improper)?;
-        (mirror::plane_of(&isometry, options.residual)?, squared)
-    } else if !mirror::may_fit(from, to, most) {
+    if !options.umeyama && !mirror::may_fit(from, to, most) {
         return None;
-    } else if let Some(plane) = mirror::halfway(from, to, HALFWAY * size, options.eigen_gap) {
+    }
+    let halfway = || mirror::halfway(from, to, EXACT * size, options.eigen_gap);
+    if let Some(plane) = (!options.umeyama).then(halfway).flatten() {
         return Some(Candidate { halfway: true, ..candidate(plane, 0.0, source) });
-    } else {
-        let fit = mirror::fit(from, to)?;
-        (fit.gap >= options.eigen_gap).then_some((fit.plane, fit.squared))?
-    };
+    }
+    let (plane, squared) = fitted(from, to, options)?;
     (squared <= most).then(|| candidate(plane, squared.max(0.0).sqrt(), source))
 }
 
-/// Corners that a plane halfway mirrors to within this share of D need no fit for a vote: files are not more precise.
-const HALFWAY: f64 = 1e-6;
+/// The plane that fits best, if it is the only one, and its mean squared residual, mm^2.
+fn fitted(from: &[Point], to: &[Point], options: &Options) -> Option<(Plane, f64)> {
+    if options.umeyama {
+        let (isometry, squared) = Isometry::fit(from, to, Chirality::Improper)?;
+        return Some((mirror::plane_of(&isometry, options.residual)?, squared));
+    }
+    let fit = mirror::fit(from, to)?;
+    (fit.gap >= options.eigen_gap).then_some((fit.plane, fit.squared))
+}
 
 /// The kinds of direct isometry.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -84,17 +84,18 @@ impl<'a> Images<'a> {
         let (outlines, field) = (self.merger.outlines, &self.merger.validated.field);
         let radius = self.merger.parsed.measures.tolerance.length(NEAR);
         let mut taken = vec![false; outlines.len()];
-        let mut pairs = Vec::new();
+        let (mut pairs, mut near) = (Vec::new(), Vec::new());
         for a in 0..outlines.len() as u32 {
             if taken[a as usize] {
                 continue;
             }
             let image = plane.reflect(&outlines[a as usize].centroid);
             let unmatched = |&b: &u32| b >= a && !taken[b as usize];
-            let mut near: Vec<_> = self.centroids.near(&image, radius).filter(unmatched).collect();
+            near.clear();
+            near.extend(self.centroids.near(&image, radius).filter(unmatched));
             let distance = |b: u32| (outlines[b as usize].centroid - image).norm();
             near.sort_by(|&b, &c| distance(b).total_cmp(&distance(c)).then(b.cmp(&c)));
-            if let Some(b) = near.into_iter().find(|&b| self.samples.maps_onto(a, b, plane, field)) {
+            if let Some(&b) = near.iter().find(|&&b| self.samples.maps_onto(a, b, plane, field)) {
                 (taken[a as usize], taken[b as usize]) = (true, true);
                 pairs.push((a, b));
             }

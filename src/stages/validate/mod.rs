@@ -148,9 +148,11 @@ pub fn validate(
     let mut samples = FaceSamples::new(parsed, outlines, options);
     let mut planes = Vec::new();
     if options.correlation > 0.0 {
+        let mut corners = Corners::default();
         for candidate in &candidates.mirrors {
             cancel.check().map_err(cancelled)?;
-            planes.extend(by_correlation(matches, candidate, &mut samples, options));
+            let candidate = fitted(candidate, matches, outlines, &mut corners);
+            planes.extend(by_correlation(matches, &candidate, &mut samples, options));
         }
     } else {
         let mut best: f64 = 0.0;
@@ -229,7 +231,7 @@ fn distinct(
     let distance = measures.tolerance.length(options.same_offset);
     let mut index = PlaneIndex::new(measures.centroid, options.same_angle_deg.to_radians(), distance);
     let of_two = |c: &Candidate| c.pair.is_some_and(|i| matches.pairs[i as usize].is_of_two());
-    let mut groups: Vec<Group> = Vec::new();
+    let (mut groups, mut corners) = (Vec::<Group>::new(), Corners::default());
     for candidate in order {
         cancel.check()?;
         if let Some(i) = index.find(&candidate.plane) {
@@ -239,7 +241,8 @@ fn distinct(
                 groups[i].pairs.extend(candidate.pair);
             }
         } else {
-            let Candidate { plane, residual, weight, source, pair, .. } = fitted(candidate, matches, outlines);
+            let Candidate { plane, residual, weight, source, pair, .. } =
+                fitted(candidate, matches, outlines, &mut corners);
             index.add(plane);
             let paired = of_two(candidate);
             groups.push(Group { plane, residual, weight, source, paired, pairs: pair.into_iter().collect() });
@@ -256,11 +259,12 @@ fn distinct(
 }
 
 /// The candidate, fitted to all corners of its pair where it lies halfway: what stands for others is to be exact.
-fn fitted(candidate: &Candidate, matches: &Matches, outlines: &[Outline]) -> Candidate {
+fn fitted(candidate: &Candidate, matches: &Matches, outlines: &[Outline], corners: &mut Corners) -> Candidate {
     let pair = candidate.pair.filter(|_| candidate.halfway);
     let fit = pair.and_then(|i| {
-        let Corners { from, to } = matches.pairs[i as usize].corners(outlines);
-        mirror::fit(&from, &to)
+        corners.clear();
+        corners.add(&matches.pairs[i as usize], outlines);
+        mirror::fit(&corners.from, &corners.to)
     });
     let of_fit = |f: mirror::Fit| Candidate { plane: f.plane, residual: f.squared.max(0.0).sqrt(), ..*candidate };
     fit.map_or(*candidate, of_fit)

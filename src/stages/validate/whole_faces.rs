@@ -155,6 +155,8 @@ mod tests {
     use super::*;
     use crate::brep::{FaceId, MeshFace};
     use crate::geometry::Plane;
+    use crate::geometry::revolution::turn;
+    use std::f64::consts::FRAC_PI_2;
 
     /// Faces of one triangle each.
     fn mesh(triangles: &[[[f64; 3]; 3]]) -> Mesh {
@@ -216,6 +218,18 @@ mod tests {
     }
 
     #[test]
+    fn only_an_isometry_that_goes_back_tells_of_the_image_too() {
+        // Of four places about the z axis only two hold a face: a quarter turn maps the first onto the second, and the
+        // second onto none.
+        let turned = |[x, y, z]: [f64; 3]| [-y, x, z];
+        let first = [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+        let faces = WholeFaces::of(&mesh(&[first, first.map(turned)]), 1e-3, false);
+        let quarter = Isometry::about(&Point::origin(), &turn(&Vector::z(), FRAC_PI_2));
+        let mut mapped = faces.under(&quarter);
+        assert_eq!([0, 1].map(|i| mapped.has(PlacedFaceId(i))), [true, false]);
+    }
+
+    #[test]
     fn a_face_is_mapped_onto_its_image_alone() {
         let right = [[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
         // Mirrored in x = 0, the corners turned around and in another order.
@@ -228,7 +242,8 @@ mod tests {
             [(left, false, true), (inside_out, false, false), (inside_out, true, true), (other, true, false)]
         {
             let faces = WholeFaces::of(&mesh(&[right, image]), 1e-3, both);
-            assert_eq!(faces.under(&mirror).has(PlacedFaceId(0)), maps);
+            let mut mapped = faces.under(&mirror);
+            assert_eq!([0, 1, 0].map(|i| mapped.has(PlacedFaceId(i))), [maps; 3]);
             assert_eq!(faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(1)), maps);
             assert!(!faces.maps_onto(&mirror, PlacedFaceId(0), PlacedFaceId(0)));
         }

@@ -1,6 +1,7 @@
 //! Whole solids and the walls they are made of.
 
 use super::*;
+use crate::brep::PlacedFaceId;
 
 #[test]
 fn a_box_is_exact() {
@@ -110,6 +111,40 @@ fn a_half_sphere_knows_its_half() {
         let mesh = b.check(12.0 * PI, 16.0 / 3.0 * PI);
         let up = mesh.faces[0].centroid.z;
         assert!((up - if upper { 1.0 } else { -1.0 }).abs() < 1e-3, "centroid {up}");
+    }
+}
+
+#[test]
+fn a_ball_is_made_as_fine_as_its_error_asks_for_and_no_finer() {
+    // A half sphere of radius 0.2 above a disc of radius 10.
+    let mut b = Builder::new();
+    let ((rim, _), (equator, _)) = (b.circle(10.0, 0.0), b.circle(0.2, 1.0));
+    b.discs(None, Some((rim, 0.0)));
+    b.face(Surface::Sphere { placement: at_height(1.0), radius: 0.2 }, true, &[&[(equator, true)]]);
+    let mesh = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap().0;
+    let triangles = mesh.triangles_of(PlacedFaceId(1));
+    let plain: f64 = triangles.clone().map(|t| 0.5 * mesh.doubled_normal(t).norm()).sum();
+    assert!((plain / (0.08 * PI) - 1.0).abs() <= 0.015, "{plain}");
+    // Steps of 0.3 both ways, the sum of whose squares over 12 is 0.015: 21 x 5 quadrilaterals.
+    assert!((150..400).contains(&triangles.len()), "{}", triangles.len());
+}
+
+#[test]
+fn faces_that_several_threads_make_keep_their_triangles() {
+    // Discs of two sizes above each other.
+    let mut b = Builder::new();
+    let disc = |i: usize| (1.0 + 0.5 * (i % 2) as f64, 1e-3 * i as f64);
+    for (radius, z) in (0..PARALLEL_FACES).map(disc) {
+        let (rim, _) = b.circle(radius, z);
+        b.discs(None, Some((rim, z)));
+    }
+    let mesh = tessellate(&b.0, &Options::default(), &Cancel::new()).unwrap().0;
+    for (i, face) in mesh.faces.iter().enumerate() {
+        let (radius, z) = disc(i);
+        assert!((face.area / (PI * radius * radius) - 1.0).abs() < 1e-5, "{i}: {}", face.area);
+        let corners: Vec<_> = mesh.triangles_of(PlacedFaceId(i as u32)).flat_map(|t| mesh.corners(t)).collect();
+        assert!(corners.iter().all(|p| (p.z - z).abs() < 1e-9 && p.x.hypot(p.y) < radius + 1e-9), "{i}");
+        assert!(!corners.is_empty() && mesh.points_of(PlacedFaceId(i as u32)).iter().all(|p| (p.z - z).abs() < 1e-9));
     }
 }
 
