@@ -258,3 +258,60 @@ impl Canvas {
 fn blend(under: Rgb, over: Rgb, share: f32) -> Rgb {
     [0, 1, 2].map(|i| (f32::from(under[i]) * (1.0 - share) + f32::from(over[i]) * share) as u8)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::alignment::shapes;
+    use crate::geometry::{Frame, Vector};
+
+    /// An empty picture; places in it are given in samples, so that the camera does not matter.
+    fn canvas(side: usize, samples: usize) -> Canvas {
+        let mesh = shapes::cuboid(1.0, 1.0, 1.0);
+        let frame = Frame { axes: [Vector::x(), Vector::y(), Vector::z()], origin: Point::origin() };
+        let camera = Camera::from_corner(&mesh, &shapes::measures(&mesh), &frame, side * samples);
+        Canvas::new(camera, side, samples)
+    }
+
+    /// A fully lit grey face over some columns and rows.
+    fn rectangle(canvas: &mut Canvas, face: u32, columns: [f64; 2], rows: [f64; 2], depth: f64, grey: u8) {
+        let width = canvas.side * canvas.samples;
+        let corner = |x, y| Corner { at: [x, y, depth], cell: cell([x, y], width), light: 1.0, across: 0.0 };
+        let [a, b] = columns.map(|x| corner(x, rows[0]));
+        let [d, c] = columns.map(|x| corner(x, rows[1]));
+        canvas.triangle([&a, &b, &c], Paint::Plain([grey; 3]), face);
+        canvas.triangle([&a, &c, &d], Paint::Plain([grey; 3]), face);
+    }
+
+    #[test]
+    fn faces_behind_a_bar_show_above_and_below_it_and_are_outlined_once() {
+        let mut canvas = canvas(8, 1);
+        rectangle(&mut canvas, 0, [0.0, 8.0], [2.0, 4.0], 2.0, 210);
+        rectangle(&mut canvas, 1, [1.0, 3.0], [0.0, 3.0], 1.0, 110);
+        rectangle(&mut canvas, 2, [4.0, 6.0], [3.0, 7.0], 1.0, 50);
+        canvas.shade();
+        // Outlines leave 55 % of 255, 210, 110 and 50.
+        let letter = |[grey, ..]: &Rgb| match grey {
+            255 => '.',
+            140 => ',',
+            210 => 'A',
+            115 => 'a',
+            110 => 'B',
+            60 => 'b',
+            50 => 'C',
+            27 => 'c',
+            _ => '?',
+        };
+        let picture: Vec<String> = canvas.pixels().chunks(8).map(|row| row.iter().map(letter).collect()).collect();
+        let expected = [",Bb.....", ",bb,,,,,", "AAAAAAAA", "aaaaaaaa", "...,Cc..", "...,Cc..", "...,cc..", "........"];
+        assert_eq!(picture, expected);
+    }
+
+    #[test]
+    fn pixels_of_one_colour_have_that_colour() {
+        // A ninth has no end in binary: rounded down it would leave 254, 6 and 99.
+        let mut canvas = canvas(2, 3);
+        canvas.colours = vec![[255, 7, 100]; 36];
+        assert_eq!(canvas.pixels(), [[255, 7, 100]; 4]);
+    }
+}
