@@ -220,3 +220,41 @@ fn is_plane(model: &Model, face: FaceId) -> bool {
     let FaceGeometry::Trimmed { surface, .. } = &model.faces[face.index()].geometry else { return false };
     matches!(**surface, Surface::Plane(_))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Transform;
+    use crate::stages::fixture::{cuboid, solid};
+
+    impl Loops {
+        /// Adds a square from (corner, corner, 0) on: the outer loop or, the other way round, a hole.
+        fn push_square(&mut self, corner: f64, side: f64, outer: bool) {
+            let mut square = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]]
+                .map(|[x, y]| Point::new(corner + x, corner + y, 0.0));
+            if !outer {
+                square.reverse();
+            }
+            self.corners.extend(square);
+            self.points.extend(square);
+            let (corners, points) = (self.corners.len(), self.points.len());
+            self.loops.push(OneLoop { corners, points, length: 4.0 * side, outer });
+        }
+    }
+
+    #[test]
+    fn the_outer_loop_comes_first_and_both_holes_are_kept() {
+        let model = solid(&cuboid(1.0, 1.0, 1.0), &Transform::identity()).model;
+        let mut loops = Loops::default();
+        loops.push_square(0.0, 10.0, true);
+        loops.push_square(1.5, 1.0, false);
+        loops.push_square(6.0, 2.0, false);
+        let mut found = LocalOutlines::default();
+        add_outline(&mut found, &model, &[FaceId(0)], &loops, None, true);
+        let hole = |middle: f64, length| InnerLoop { centroid: Point::new(middle, middle, 0.0), length };
+        assert_eq!(found.inner, [hole(7.0, 8.0), hole(2.0, 4.0)]);
+        assert_eq!(found.corners, loops.get(0).corners);
+        assert_eq!(found.outlines[0].perimeter, 40.0);
+        assert_eq!(found.outlines[0].vector_area, Vector::z() * 95.0);
+    }
+}

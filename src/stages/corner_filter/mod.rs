@@ -327,3 +327,17 @@ impl<'a> Finder<'a> {
         Ok(first..self.found.outlines.len())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_are_found_where_some_are_left_out() {
+        // Counted from face 3, face 5 would come third and face 4 second.
+        let places = PlacedFaces(&[(3, 8), (5, 1), (6, 4)]);
+        let found = [2, 3, 4, 5, 6, 7].map(|face| places.find(FaceId(face)).map(|place| place.0));
+        assert_eq!(found, [None, Some(8), None, Some(1), Some(4), None]);
+        assert_eq!(PlacedFaces(&[]).find(FaceId(0)), None);
+    }
+}
