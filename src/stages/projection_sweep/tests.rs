@@ -97,6 +97,19 @@ fn a_hole_through_a_slice_casts_light() {
 }
 
 #[test]
+fn an_upright_post_on_a_wider_one_casts_its_own_shadow() {
+    // A leaning post, 1 wide and 4 high, beside a post 2 wide and 2 high with one 1 wide and 2 high on top.
+    let leaning = shapes::mapped(&shapes::cuboid(1.0, 1.0, 4.0), |p| p + Vector::new(0.25 * p.z - 4.0, 0.0, 0.0));
+    let narrow = shapes::mapped(&shapes::cuboid(1.0, 1.0, 2.0), |p| p + Vector::new(0.5, 0.5, 2.0));
+    let posts = shapes::joined(&shapes::cuboid(2.0, 2.0, 2.0), &narrow);
+    let parsed = parsed(shapes::joined(&leaning, &posts));
+    let table = Turntable { u: Vector::y(), v: -Vector::x(), ..Turntable::arbitrary(&parsed.measures, &Vector::z()) };
+    let mut slices = Slices::cut(&parsed.mesh, &table, 16, &Cancel::new()).unwrap();
+    let areas = slices.areas(&[0.0], &Cancel::new()).unwrap();
+    assert!((areas[0] - 10.0).abs() < 1e-12, "{areas:?}");
+}
+
+#[test]
 fn without_symmetry_a_rectilinear_model_gets_the_rectilinear_frame() {
     let turn = shapes::rotation(0.4, 1.2, 0.8);
     let parsed = parsed(shapes::turned(&shapes::letter_f(0.7), &turn));
