@@ -304,8 +304,10 @@ fn check(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
     use crate::geometry::{Transform, Vector};
     use crate::stages::fixture::{cuboid, solid};
+    use crate::stages::pair_match::{Correspondence, FacePair, Order};
 
     #[test]
     fn a_plane_that_maps_a_share_is_no_farther_away_than_that_allows() {
@@ -322,5 +324,40 @@ mod tests {
         assert!((distance - 0.875).abs() < 1e-9);
         assert!(distance <= farthest(&parsed, &field, support.share));
         assert!(distance > farthest(&parsed, &field, 0.95));
+    }
+
+    #[test]
+    fn what_stands_for_a_plane_is_fitted_to_all_corners() {
+        // A square at x = 1 and its image, one corner of which lies 4e-10 farther away: halfway between the corners
+        // that are farthest apart the plane is 2e-10 off at all of them, through the middle of all 0.5e-10.
+        let square = [[1.0, 0.0, 0.0], [1.0, 2.0, 0.0], [1.0, 2.0, 2.0], [1.0, 0.0, 2.0]].map(Point::from);
+        let mut image = square.map(|p| Point::new(-p.x, p.y, p.z));
+        image[0].x -= 4e-10;
+        let outline = |corners: &[Point]| Outline {
+            faces: Default::default(),
+            corners: corners.into(),
+            perimeter: 8.0,
+            inner: Vec::new(),
+            area: 4.0,
+            centroid: Point::origin(),
+            axis: None,
+            oriented: true,
+            shape: None,
+        };
+        let outlines = [outline(&square), outline(&image)];
+        let corners = (0..4).map(|i| (i, i)).collect();
+        let correspondence = Correspondence::Listed { corners, order: Order::Reversed };
+        let matches =
+            Matches { pairs: vec![FacePair { faces: [0, 1], correspondence, weight: 1.0 }], ..Matches::default() };
+        let plane = mirror::halfway(&square, &image, 1e-9, 1e-3).unwrap();
+        let candidate =
+            Candidate { plane, residual: 0.0, weight: 8.0, source: Source::Corners, pair: Some(0), halfway: true };
+        let parsed = solid(&cuboid(2.0, 2.0, 2.0), &Transform::identity());
+        let groups = distinct(&parsed, &outlines, &matches, &[candidate], &Options::default(), &Cancel::new()).unwrap();
+        let fit = mirror::fit(&square, &image).unwrap();
+        assert_eq!((groups.len(), groups[0].plane, groups[0].residual), (1, fit.plane, fit.squared.sqrt()));
+        let middle = Point::new(-0.5e-10, 1.0, 1.0);
+        assert!((plane.signed_distance(&middle).abs() - 1.5e-10).abs() < 1e-14);
+        assert!(groups[0].plane.signed_distance(&middle).abs() < 1e-14 && groups[0].residual > 0.0);
     }
 }
