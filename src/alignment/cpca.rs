@@ -6,7 +6,7 @@
 use crate::brep::Mesh;
 use crate::geometry::{Matrix, Point, Vector};
 
-use super::principal_axes;
+use super::{principal_axes, triangle};
 
 /// Principal axes of the surface, largest variance first.
 pub fn axes(mesh: &Mesh) -> [Vector; 3] {
@@ -16,11 +16,10 @@ pub fn axes(mesh: &Mesh) -> [Vector; 3] {
 /// Covariance of the surface's points about its area centroid, mm^2; zero for a mesh without area.
 pub fn covariance(mesh: &Mesh) -> Matrix {
     let (mut total, mut moment) = (0.0, Vector::zeros());
-    // Of each triangle, for both passes: centroid and area, which is no number or zero where it counts for nothing.
-    let part = |t| (centroid(&mesh.corners(t)), 0.5 * mesh.doubled_normal(t).norm());
-    let parts: Vec<_> = (0..mesh.triangles.len()).map(part).collect();
-    let counts = |area: f64| area > 0.0 && area.is_finite();
-    for (centroid, area) in parts.iter().filter(|(_, area)| counts(*area)) {
+    // For both passes.
+    let part = |t| triangle(mesh, t).map(|(corners, _, area)| (t, centroid(&corners), area));
+    let parts: Vec<_> = (0..mesh.triangles.len()).filter_map(part).collect();
+    for (_, centroid, area) in &parts {
         total += area;
         moment += centroid.coords * *area;
     }
@@ -29,8 +28,8 @@ pub fn covariance(mesh: &Mesh) -> Matrix {
     }
     let m = Point::from(moment / total);
     let mut sum = [0.0; 6];
-    for (t, (centroid, area)) in parts.iter().enumerate().filter(|(_, (_, area))| counts(*area)) {
-        let [a, b, c] = mesh.corners(t);
+    for (t, centroid, area) in &parts {
+        let [a, b, c] = mesh.corners(*t);
         let [a, b, c, g] = [a, b, c, *centroid].map(|p| products(&(p - m)));
         for i in 0..6 {
             sum[i] += area * (a[i] + b[i] + c[i] + 9.0 * g[i]);

@@ -149,12 +149,15 @@ pub(crate) fn principal_axes(covariance: &Matrix) -> [Vector; 3] {
 
 /// The triangles of a mesh that have an area: corners, unit normal, area.
 pub(crate) fn triangles(mesh: &Mesh) -> impl Iterator<Item = ([Point; 3], Vector, f64)> + '_ {
-    (0..mesh.triangles.len()).filter_map(|t| {
-        let corners = mesh.corners(t);
-        let doubled = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
-        let length = doubled.norm();
-        (length > 0.0 && length.is_finite()).then(|| (corners, doubled / length, 0.5 * length))
-    })
+    (0..mesh.triangles.len()).filter_map(|t| triangle(mesh, t))
+}
+
+/// One of them, if it has an area.
+fn triangle(mesh: &Mesh, t: usize) -> Option<([Point; 3], Vector, f64)> {
+    let corners = mesh.corners(t);
+    let doubled = (corners[1] - corners[0]).cross(&(corners[2] - corners[0]));
+    let length = doubled.norm();
+    (length > 0.0 && length.is_finite()).then(|| (corners, doubled / length, 0.5 * length))
 }
 
 #[cfg(test)]

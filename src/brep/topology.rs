@@ -52,19 +52,6 @@ impl Model {
         let t = curve.wrap_towards(if late { to } else { from }, inward);
         direction_at(curve, t, inward).map(|d| d * sense).or_else(straight)
     }
-
-    /// Whether an edge has no length: its ends and its middle lie within `tolerance` (mm) of each other.
-    pub fn is_degenerate(&self, id: EdgeId, tolerance: f64) -> bool {
-        let [start, end] = self.ends(id);
-        if (end - start).norm() > tolerance {
-            return false;
-        }
-        let Some(curve) = self.edges[id.index()].curve.as_deref() else { return true };
-        let Some([from, to]) = self.edge_span(id) else { return true };
-        let period = curve.period();
-        let far = |share: f64| (curve.point(curve.wrap(from + share * (to - from), period)) - start).norm() > tolerance;
-        !far(0.5) && !far(0.3)
-    }
 }
 
 impl Curve {

@@ -166,14 +166,8 @@ mod tests {
         assert!((exact.rotation - turned).amax() < 1e-12 && (exact.translation - moved.translation).amax() < 1e-12);
         images[3].x += 1e-6;
         assert!(Isometry::exact(&corners(), &images, 1e-7).is_none());
-        assert!(
-            Isometry::exact(
-                &corners(),
-                &corners().iter().map(|p| Point::new(-p.x, p.y, p.z)).collect::<Vec<_>>(),
-                1e-7
-            )
-            .is_none()
-        );
+        let mirrored: Vec<_> = corners().iter().map(|p| Point::new(-p.x, p.y, p.z)).collect();
+        assert!(Isometry::exact(&corners(), &mirrored, 1e-7).is_none());
     }
 
     #[test]

@@ -3,13 +3,12 @@
 use super::Point2;
 
 /// Signed area of the closed polygon, positive when it runs counter-clockwise.
-pub fn signed_area(polygon: &[Point2]) -> f64 {
-    let Some(last) = polygon.last() else { return 0.0 };
-    let mut previous = last;
+pub fn signed_area(polygon: impl DoubleEndedIterator<Item = [f64; 2]> + Clone) -> f64 {
+    let Some(mut p) = polygon.clone().next_back() else { return 0.0 };
     let mut twice = 0.0;
-    for p in polygon {
-        twice += previous.x * p.y - p.x * previous.y;
-        previous = p;
+    for q in polygon {
+        twice += p[0] * q[1] - q[0] * p[1];
+        p = q;
     }
     0.5 * twice
 }
@@ -146,8 +145,9 @@ mod tests {
 
     #[test]
     fn a_counter_clockwise_square_has_positive_area() {
-        assert_eq!(signed_area(&square()), 4.0);
-        assert_eq!(signed_area(&square().into_iter().rev().collect::<Vec<_>>()), -4.0);
+        let square = square().into_iter().map(|p| [p.x, p.y]);
+        assert_eq!(signed_area(square.clone()), 4.0);
+        assert_eq!(signed_area(square.rev()), -4.0);
     }
 
     #[test]

@@ -184,14 +184,19 @@ fn ends(first: usize, end: usize) -> (Range<usize>, [u64; 2]) {
     if first >= end {
         return (0..0, [0; 2]);
     }
-    (first / 64..(end - 1) / 64 + 1, [u64::MAX << (first % 64), u64::MAX >> (63 - (end - 1) % 64)])
+    (first / 64..(end - 1) / 64 + 1, masks(first, end - 1))
+}
+
+/// The bits from the first pixel on in its word, and those up to the last one in its.
+#[inline]
+fn masks(first: usize, last: usize) -> [u64; 2] {
+    [u64::MAX << (first % 64), u64::MAX >> (63 - last % 64)]
 }
 
 /// Covers the pixels of a row from the first to the last of some.
 #[inline]
 fn fill(row: &mut [u64], first: usize, last: usize) {
-    let (left, right) = (first / 64, last / 64);
-    let (low, high) = (u64::MAX << (first % 64), u64::MAX >> (63 - last % 64));
+    let (left, right, [low, high]) = (first / 64, last / 64, masks(first, last));
     if left >= right {
         row[left] |= low & high;
     } else {

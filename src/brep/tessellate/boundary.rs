@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use super::border::Border;
 use super::chart::{Chart, Uv};
 use crate::brep::{Placement, Surface};
-use crate::geometry::Point;
+use crate::geometry::{Point, polygon};
 
 /// Points nearer than this share of what is too far are taken to be where they should be.
 const GOOD: f64 = 0.02;
@@ -34,7 +34,7 @@ impl Path {
 
     /// Signed area in parameter space (of the polygon, for paths that do not go round).
     pub fn signed_area(&self) -> f64 {
-        signed_area(self.uv.iter().copied())
+        polygon::signed_area(self.uv.iter().copied())
     }
 
     /// Goes round the surface?
@@ -65,17 +65,6 @@ impl Path {
             *uv = [uv[0] + by[0], uv[1] + by[1]];
         }
     }
-}
-
-/// Signed area of a polygon.
-pub(super) fn signed_area(polygon: impl DoubleEndedIterator<Item = Uv> + Clone) -> f64 {
-    let Some(mut p) = polygon.clone().next_back() else { return 0.0 };
-    let mut twice = 0.0;
-    for q in polygon {
-        twice += p[0] * q[1] - q[0] * p[1];
-        p = q;
-    }
-    0.5 * twice
 }
 
 /// The rectangle [u0, u1, v0, v1] around points.

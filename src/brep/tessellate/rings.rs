@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use super::Few;
-use super::boundary::{Path, rectangle, signed_area};
+use super::boundary::{Path, rectangle};
 use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::edges::Fineness;
 use super::triangulate::zip;
+use crate::geometry::polygon;
 
 /// How much wider than a step of the curvature triangles may be.
 pub(super) const WIDEST: f64 = 2.2;
@@ -48,7 +49,7 @@ pub(super) fn add_wall(patch: &mut Patch, lower: &Chain, upper: &Chain, widest: 
     let uv = |chain: &Chain| &patch.uv[chain.start as usize..chain.end as usize];
     let rising = |chain: &[Uv]| chain.windows(2).all(|w| w[1][0] >= w[0][0]);
     let around = uv(lower).iter().chain(uv(upper).iter().rev()).copied();
-    let area = signed_area(around);
+    let area = polygon::signed_area(around);
     if !(rising(uv(lower)) && rising(uv(upper)) && area > 0.0) {
         return None;
     }
