@@ -94,7 +94,7 @@ fn run(bytes: &[u8], seconds: &mut [f64; 8]) -> (usize, usize) {
     let validated = timed!(validate(&parsed, &outlines, &matches, &candidates, &Default::default(), &cancel));
     let symmetries = timed!(merge(&parsed, &outlines, &matches, &validated, &Default::default(), &cancel));
     let canonical = timed!(projection_sweep(&parsed, &symmetries, &Default::default(), &cancel));
-    timed!(descriptor(&parsed.mesh, &parsed.measures, &canonical.frame, &Default::default(), &cancel));
+    timed!(descriptor(&parsed.wireframe, &parsed.measures, &canonical.frame, &Default::default(), &cancel));
     assert_eq!(stage, STAGES.len());
     (parsed.mesh.faces.len(), symmetries.planes.len())
 }

@@ -65,12 +65,12 @@ fn axes_in(path: &Path) -> Result<BTreeMap<String, [Vector; 3]>> {
 fn describe(folder: &Path, id: &str, tables: &[BTreeMap<String, [Vector; 3]>]) -> Result<Vec<Option<Descriptor>>> {
     let cancel = Cancel::new();
     let bytes = std::fs::read(folder.join(id))?;
-    let Parsed { mesh, measures, .. } =
+    let Parsed { wireframe, measures, .. } =
         parse(&bytes, &Default::default(), None, &cancel).map_err(|e| format!("{id}: {e}"))?;
     let in_table = |table: &BTreeMap<String, [Vector; 3]>| {
         let Some(axes) = table.get(id) else { return Ok(None) };
         let frame = Frame { axes: *axes, origin: measures.centroid };
-        Ok(Some(descriptor(&mesh, &measures, &frame, &Default::default(), &cancel)?))
+        Ok(Some(descriptor(&wireframe, &measures, &frame, &Default::default(), &cancel)?))
     };
     tables.iter().map(in_table).collect()
 }

@@ -52,7 +52,7 @@ fn model(criterion: &mut Criterion, name: &str, bytes: &[u8]) {
     let pixels = sweep::Options { area_by: sweep::AreaBy::Pixels, refine: false, ..Default::default() };
     let by_pixels = || projection_sweep(&parsed, &symmetries, &pixels, &Cancel::new()).expect("as by spans");
     criterion.bench_function(&format!("projection_sweep by pixels/{name}"), |b| b.iter(|| black_box(by_pixels())));
-    measured!(descriptor, &parsed.mesh, &parsed.measures, &canonical.frame);
+    measured!(descriptor, &parsed.wireframe, &parsed.measures, &canonical.frame);
 }
 
 criterion_group! {

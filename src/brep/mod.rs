@@ -14,6 +14,7 @@ mod starts;
 pub mod surface;
 pub mod tessellate;
 pub mod topology;
+mod wireframe;
 
 use std::sync::Arc;
 
@@ -23,6 +24,7 @@ use crate::geometry::{Isometry, Point, Transform, Vector};
 pub use curve::Curve;
 pub use mesh::{Mesh, MeshFace, PlacedFaceId};
 pub use surface::Surface;
+pub use wireframe::{Side, Wireframe};
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {

@@ -43,7 +43,7 @@ fn draw(dir: &Path, model: &str, described: &Described, settings: &Settings) -> 
     let ranked = &described.framed.ranked;
     let (parsed, canonical) = (&ranked.posed.parsed, &described.framed.canonical);
     let options = &settings.descriptor;
-    let views = silhouettes(&parsed.mesh, &parsed.measures, &canonical.frame, options, &Cancel::new());
+    let views = silhouettes(&parsed.wireframe, &parsed.measures, &canonical.frame, options, &Cancel::new());
     let views = views.map_err(|e| RunError::Usage(format!("{model}: {e}")))?;
     let name = file_name(model);
     let drawn = render::figures::render_all(dir, &name, parsed, &ranked.symmetries, canonical, &views);

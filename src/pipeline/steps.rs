@@ -157,8 +157,8 @@ impl Steps<'_> {
     }
 
     pub fn descriptor(self, job: &Job, framed: Framed) -> Step<Described> {
-        let Parsed { mesh, measures, .. } = &framed.ranked.posed.parsed;
-        let of = |(_, frame): &(Method, Frame)| descriptor(mesh, measures, frame, &self.0.descriptor, &job.cancel);
+        let Parsed { mesh, wireframe, measures, .. } = &framed.ranked.posed.parsed;
+        let of = |(_, frame): &(Method, Frame)| descriptor(wireframe, measures, frame, &self.0.descriptor, &job.cancel);
         let descriptors = framed.frames.iter().map(of).collect::<Step<_>>()?;
         let thumbnail = render::thumbnail(mesh, measures, &framed.canonical.frame, &job.cancel)
             .map_err(|c| ModelError::cancelled(Stage::Descriptor, c))?;

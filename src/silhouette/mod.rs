@@ -1,6 +1,7 @@
 //! Silhouettes: pictures of 1 bit to the pixel, their rows held in words.
 
 pub mod draw;
+pub mod outline;
 
 use std::ops::Range;
 
@@ -36,9 +37,9 @@ impl Silhouette {
         &self.bits[y * self.words..(y + 1) * self.words]
     }
 
-    /// The bits of some rows, one after the other.
-    fn rows_mut(&mut self, rows: Range<usize>) -> impl Iterator<Item = &mut [u64]> {
-        self.bits[rows.start * self.words..rows.end * self.words].chunks_exact_mut(self.words.max(1))
+    /// The bits of a row, to be changed.
+    fn row_mut(&mut self, y: usize) -> &mut [u64] {
+        &mut self.bits[y * self.words..(y + 1) * self.words]
     }
 
     /// Calls `run` for the covered pixels of each row, from the lowest row up and from left to right, as many as stand
@@ -96,26 +97,10 @@ impl Silhouette {
         ones as usize
     }
 
-    /// Whether all pixels of some rows with first <= x < end are covered.
-    pub fn covers(&self, rows: Range<usize>, first: usize, end: usize) -> bool {
-        let (words, [low, high]) = ends(first, end);
-        let mut rows = self.bits[rows.start * self.words..rows.end * self.words].chunks_exact(self.words.max(1));
-        match words.len() {
-            0 => true,
-            1 => rows.all(|row| !row[words.start] & low & high == 0),
-            _ => rows.all(|row| match &row[words.clone()] {
-                [left, between @ .., right] => {
-                    !left & low == 0 && !right & high == 0 && between.iter().all(|word| *word == u64::MAX)
-                }
-                _ => true,
-            }),
-        }
-    }
-
     /// Covers the pixels of row `y` with first <= x < end.
     pub fn fill(&mut self, y: usize, first: usize, end: usize) {
         if first < end {
-            fill(&mut self.bits[y * self.words..(y + 1) * self.words], first, end - 1);
+            fill(self.row_mut(y), first, end - 1);
         }
     }
 
@@ -232,7 +217,6 @@ mod tests {
         assert_eq!(picture.count(3, 63, 66), 3);
         assert_eq!(picture.centroid(), Some([95.0, 3.5]));
         assert_eq!(Silhouette::new(9).centroid(), None);
-        assert!(picture.covers(3..4, 60, 130) && !picture.covers(3..4, 59, 70) && !picture.covers(2..4, 60, 61));
         let mut runs = Vec::new();
         picture.fill(3, 2, 3);
         picture.each_run(|y, first, end| runs.push([y, first, end]));

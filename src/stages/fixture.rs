@@ -9,7 +9,7 @@ use super::parse::Parsed;
 use crate::brep::measure::Measures;
 use crate::brep::{
     Body, BodyId, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Mesh, MeshFace, Model, Occurrence,
-    Placement, Shell, Surface, Vertex, VertexId,
+    Placement, Shell, Surface, Vertex, VertexId, Wireframe,
 };
 use crate::geometry::{Aabb, Point, Tolerance, Transform, Vector};
 
@@ -135,7 +135,9 @@ impl Builder {
         let volume = self.mesh.faces.iter().map(|f| f.flux).sum();
         let bounds = Aabb::of(&self.mesh.points);
         let measures = Measures { area, volume, centroid, bounds, tolerance: Tolerance::of(2.0 * reach) };
-        Parsed { model: self.model, mesh: self.mesh, measures, skipped: Vec::new(), warnings: Vec::new() }
+        let wireframe = Wireframe::of(&self.mesh);
+        let (skipped, warnings) = Default::default();
+        Parsed { model: self.model, mesh: self.mesh, wireframe, measures, skipped, warnings }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Stage 8: frame -> three silhouettes, their contours, and the Fourier descriptors.
 //!
-//! In: a mesh, its measures and a frame. Out: a [`Descriptor`].
+//! In: the wireframe of a mesh, the mesh's measures and a frame. Out: a [`Descriptor`].
 //! Method: the paper's section VI. View i looks along axis i of the frame; its picture has axis i + 1 to the right and
 //! axis i + 2 up (mod 3). The outer contour of the silhouette is sampled at 256 points equally spaced by arc length,
 //! their distances from the silhouette's centroid are transformed, and F_k / |F_0| is kept, k = 1 to 32: magnitudes,
@@ -13,7 +13,7 @@ pub mod contour;
 pub mod fourier;
 pub mod hull;
 
-use crate::brep::Mesh;
+use crate::brep::Wireframe;
 use crate::brep::measure::Measures;
 use crate::cancel::Cancel;
 use crate::geometry::Frame;
@@ -99,7 +99,7 @@ impl Descriptor {
 ///
 /// Errors: the work was cancelled, or a silhouette is empty.
 pub fn descriptor(
-    mesh: &Mesh,
+    wireframe: &Wireframe,
     measures: &Measures,
     frame: &Frame,
     options: &Options,
@@ -107,7 +107,7 @@ pub fn descriptor(
 ) -> Result<Descriptor, ModelError> {
     let mut found =
         Descriptor { magnitude: [[0.0; HARMONICS]; 3], phase: [[[[0.0; 2]; HARMONICS]; 2]; 3], hull: [false; 3] };
-    for (i, picture) in silhouettes(mesh, measures, frame, options, cancel)?.iter().enumerate() {
+    for (i, picture) in silhouettes(wireframe, measures, frame, options, cancel)?.iter().enumerate() {
         let view = describe(picture, options)
             .ok_or_else(|| ModelError::new(Stage::Descriptor, "a silhouette without a contour"))?;
         found.magnitude[i] = fourier::magnitudes(&view.phase[0]);
@@ -119,7 +119,7 @@ pub fn descriptor(
 
 /// The three silhouettes of a model in a frame; view i looks along axis i.
 pub fn silhouettes(
-    mesh: &Mesh,
+    wireframe: &Wireframe,
     measures: &Measures,
     frame: &Frame,
     options: &Options,
@@ -130,8 +130,8 @@ pub fn silhouettes(
         return Err(ModelError::new(Stage::Descriptor, "the model has no extent"));
     }
     let raster = Raster { centre: measures.centroid, scale: options.scale(size), side: options.side() };
-    let [x, y, z] = frame.axes.map(|axis| raster.project(mesh, &axis));
-    let draw = |sides| raster.draw(mesh, sides, cancel).map_err(|c| ModelError::cancelled(Stage::Descriptor, c));
+    let [x, y, z] = frame.axes.map(|axis| raster.project(wireframe, &axis));
+    let draw = |sides| raster.draw(wireframe, sides, cancel).map_err(|c| ModelError::cancelled(Stage::Descriptor, c));
     Ok([draw([&y, &z])?, draw([&z, &x])?, draw([&x, &y])?])
 }
 

@@ -2,6 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::alignment::shapes;
+use crate::brep::Mesh;
 use crate::distance;
 use crate::geometry::{Point, Vector};
 
@@ -19,7 +20,7 @@ fn own_frame(mesh: &Mesh) -> Frame {
 }
 
 fn described(mesh: &Mesh, frame: &Frame) -> Descriptor {
-    descriptor(mesh, &shapes::measures(mesh), frame, &Options::default(), &Cancel::new()).unwrap()
+    descriptor(&Wireframe::of(mesh), &shapes::measures(mesh), frame, &Options::default(), &Cancel::new()).unwrap()
 }
 
 #[test]
@@ -27,7 +28,9 @@ fn the_views_look_along_their_axes() {
     // A 1 x 2 x 4 box: widths and heights of the pictures are (y, z), (z, x), (x, y).
     let mesh = shapes::cuboid(1.0, 2.0, 4.0);
     let options = Options { side: 64, ..Options::default() };
-    let views = silhouettes(&mesh, &shapes::measures(&mesh), &own_frame(&mesh), &options, &Cancel::new()).unwrap();
+    let views =
+        silhouettes(&Wireframe::of(&mesh), &shapes::measures(&mesh), &own_frame(&mesh), &options, &Cancel::new())
+            .unwrap();
     let extent = |s: &Silhouette| {
         let rows = (0..64).filter(|&y| s.count(y, 0, 64) > 0).count();
         let widest = (0..64).map(|y| s.count(y, 0, 64)).max().unwrap();
@@ -73,7 +76,7 @@ fn a_mesh_without_extent_is_an_error() {
     let empty = Mesh::default();
     let measures = shapes::measures(&shapes::rectangle(1.0, 1.0));
     let frame = Frame { axes: [Vector::x(), Vector::y(), Vector::z()], origin: Point::origin() };
-    assert!(descriptor(&empty, &measures, &frame, &Options::default(), &Cancel::new()).is_err());
+    assert!(descriptor(&Wireframe::of(&empty), &measures, &frame, &Options::default(), &Cancel::new()).is_err());
 }
 
 #[test]

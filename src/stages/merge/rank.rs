@@ -75,12 +75,12 @@ fn settled(merger: &Merger, tied: Vec<SymmetryPlane>) -> Result<Vec<SymmetryPlan
 
 /// Area of the model's shadow along the normal of a plane, mm^2, by pixels.
 fn shadow_along(merger: &Merger, plane: &Plane) -> Result<f64, Cancelled> {
-    let (mesh, measures) = (&merger.parsed.mesh, &merger.parsed.measures);
+    let (wireframe, measures) = (&merger.parsed.wireframe, &merger.parsed.measures);
     let scale = PIXELS as f64 / measures.tolerance.size();
     let raster = Raster { centre: measures.centroid, scale, side: PIXELS };
     let right = any_perpendicular(&plane.normal);
-    let [x, y] = [right, plane.normal.cross(&right)].map(|axis| raster.project(mesh, &axis));
-    let picture = raster.draw(mesh, [&x, &y], merger.cancel)?;
+    let [x, y] = [right, plane.normal.cross(&right)].map(|axis| raster.project(wireframe, &axis));
+    let picture = raster.draw(wireframe, [&x, &y], merger.cancel)?;
     Ok(picture.area() as f64 / (scale * scale))
 }
 

@@ -20,7 +20,7 @@ mod step;
 
 use super::{ModelError, Stage};
 use crate::brep::measure::{Measures, measure};
-use crate::brep::{Mesh, Model, Skipped, tessellate};
+use crate::brep::{Mesh, Model, Skipped, Wireframe, tessellate};
 use crate::cancel::Cancel;
 use crate::geometry::Isometry;
 
@@ -60,6 +60,8 @@ pub struct Parsed {
     pub model: Model,
     /// The faces of all occurrences, tessellated, in place.
     pub mesh: Mesh,
+    /// The edges of the mesh.
+    pub wireframe: Wireframe,
     /// Area, volume, centroid, box and size.
     pub measures: Measures,
     /// Entities that were left out, with the reason.
@@ -90,7 +92,8 @@ pub fn parse(bytes: &[u8], options: &Options, pose: Option<&Isometry>, cancel: &
             None => ModelError::new(Stage::Parse, "no usable face"),
         });
     }
-    Ok(Parsed { model, mesh, measures, skipped, warnings })
+    let wireframe = Wireframe::of(&mesh);
+    Ok(Parsed { model, mesh, wireframe, measures, skipped, warnings })
 }
 
 /// The same STEP file with everything in it moved by a proper isometry: all its entities stay as they are, and a new

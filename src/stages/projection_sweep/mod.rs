@@ -226,7 +226,7 @@ fn turn(
     cancel: &Cancel,
 ) -> Result<Swept, crate::cancel::Cancelled> {
     let shadows: &mut dyn Shadows = match options.area_by {
-        AreaBy::Spans => &mut Slices::cut(&parsed.mesh, table, options.slices, cancel)?,
+        AreaBy::Spans => &mut Slices::cut(&parsed.wireframe, table, options.slices, cancel)?,
         AreaBy::Pixels => &mut PixelShadows::new(&parsed.mesh, &parsed.measures, table, options.pixels),
     };
     let angles = options.angles();

@@ -98,7 +98,7 @@ pub(super) fn shadow_along(
     cancel: &Cancel,
 ) -> Result<f64, Cancelled> {
     let along = across.cross(view);
-    shadow::area(&parsed.mesh, [across, &along], &parsed.measures.centroid, options.slices, cancel)
+    shadow::area(&parsed.wireframe, [&along, across], &parsed.measures.centroid, options.slices, cancel)
 }
 
 /// An axis and two directions at right angles to it: angle 0 looks along `u`, a quarter turn along `v`.

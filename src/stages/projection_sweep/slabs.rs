@@ -142,6 +142,7 @@ mod tests {
     use super::super::reference::Turntable;
     use super::*;
     use crate::alignment::shapes;
+    use crate::brep::Wireframe;
     use crate::geometry::{Point, Vector};
 
     /// Two blocks side by side, 4 and 1 high, cut at 0.25, 0.75 and so on: the first slab ends above the lower one. The
@@ -152,7 +153,7 @@ mod tests {
         let mesh = shapes::joined(&shapes::cuboid(1.0, 1.0, 4.0), &low);
         let (axis, u, v) = (Vector::z(), Vector::x(), Vector::y());
         let table = Turntable { axis, u, v, centre: Point::origin(), largest_variance: 0.0 };
-        let wire = Wire::new(&mesh, &table, 0.0, 0.5, 8);
+        let wire = Wire::new(&Wireframe::of(&mesh), &table, 0.0, 0.5, 8);
         let slabs = |slices| {
             let (mut slabs, mut found) = (Slabs::new(&wire, &slices), Vec::new());
             while let Some(slab) = slabs.rise() {

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::brep::Mesh;
+use crate::brep::Wireframe;
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Vector;
 use crate::geometry::order::{less, more};
@@ -60,7 +60,7 @@ impl Slices {
         count: u32,
         cancel: &Cancel,
     ) -> Result<Self, Cancelled> {
-        Self::cut(&parsed.mesh, &Turntable::about(&parsed.measures, axis, start), count, cancel)
+        Self::cut(&parsed.wireframe, &Turntable::about(&parsed.measures, axis, start), count, cancel)
     }
 
     fn new(thickness: f64, sides: Sides, blocks: Vec<Pieces>) -> Self {
@@ -69,21 +69,26 @@ impl Slices {
         Self { thickness, widths: Widths::of(sides), blocks, reach, stood: None }
     }
 
-    /// Cuts the mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
-    pub(super) fn cut(mesh: &Mesh, table: &Turntable, count: u32, cancel: &Cancel) -> Result<Self, Cancelled> {
+    /// Cuts a mesh into `count` slices of equal thickness from its lowest to its highest point along the axis.
+    pub(super) fn cut(
+        wireframe: &Wireframe,
+        table: &Turntable,
+        count: u32,
+        cancel: &Cancel,
+    ) -> Result<Self, Cancelled> {
         let mut count = count.clamp(1, 65_536) as usize;
-        let heights = mesh.points.iter().map(|p| table.axis.dot(&(p - table.centre)));
+        let heights = wireframe.vertices.iter().map(|p| table.axis.dot(&(p - table.centre)));
         let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), z| (less(l, z), more(h, z)));
         let mut thickness = (high - low) / count as f64;
         if !(thickness > 0.0 && thickness.is_finite()) {
             return Ok(Self::new(0.0, Sides::default(), Vec::new()));
         }
-        let mut wire = Wire::new(mesh, table, low, thickness, count);
+        let mut wire = Wire::new(wireframe, table, low, thickness, count);
         let mut crossings = wire.crossings();
         if crossings > MOST_CROSSINGS && count > FEWEST_SLICES {
             count = (count * MOST_CROSSINGS / crossings).max(FEWEST_SLICES);
             thickness = (high - low) / count as f64;
-            wire = Wire::new(mesh, table, low, thickness, count);
+            wire = Wire::new(wireframe, table, low, thickness, count);
             crossings = wire.crossings();
         }
         let block = (count * CROSSINGS / crossings.max(CROSSINGS)).max(1);

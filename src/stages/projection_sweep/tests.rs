@@ -2,13 +2,14 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::alignment::{cpca, shapes};
-use crate::brep::{Mesh, Model};
+use crate::brep::{Mesh, Model, Wireframe};
 use crate::geometry::{Plane, Point};
 use crate::stages::merge::{Label, SymmetryPlane};
 
 fn parsed(mesh: Mesh) -> Parsed {
     let measures = shapes::measures(&mesh);
-    Parsed { model: Model::empty(), mesh, measures, skipped: Vec::new(), warnings: Vec::new() }
+    let wireframe = Wireframe::of(&mesh);
+    Parsed { model: Model::empty(), mesh, wireframe, measures, skipped: Vec::new(), warnings: Vec::new() }
 }
 
 fn symmetric(parsed: &Parsed, normal: Vector) -> Symmetries {
@@ -59,7 +60,7 @@ fn spans_and_pixels_measure_the_same_areas() {
     let table = Turntable::arbitrary(&parsed.measures, &Vector::new(0.3, 0.9, 0.3).normalize());
     let cancel = Cancel::new();
     let angles = Options::default().angles();
-    let spans = Slices::cut(&parsed.mesh, &table, 1024, &cancel).unwrap().areas(&angles, &cancel).unwrap();
+    let spans = Slices::cut(&parsed.wireframe, &table, 1024, &cancel).unwrap().areas(&angles, &cancel).unwrap();
     let pixels = PixelShadows::new(&parsed.mesh, &parsed.measures, &table, 1024).areas(&angles, &cancel).unwrap();
     for (a, b) in spans.iter().zip(&pixels) {
         assert!((a - b).abs() < 0.004 * a, "spans {a}, pixels {b}");
@@ -91,7 +92,7 @@ fn a_hole_through_a_slice_casts_light() {
     let far = shapes::mapped(&shapes::cuboid(1.0, 1.0, 1.0), |p| p + Vector::new(3.0, 0.0, 0.0));
     let parsed = parsed(shapes::joined(&shapes::cuboid(1.0, 1.0, 1.0), &far));
     let table = Turntable { u: Vector::y(), v: -Vector::x(), ..Turntable::arbitrary(&parsed.measures, &Vector::z()) };
-    let mut slices = Slices::cut(&parsed.mesh, &table, 16, &Cancel::new()).unwrap();
+    let mut slices = Slices::cut(&parsed.wireframe, &table, 16, &Cancel::new()).unwrap();
     let areas = slices.areas(&[0.0, std::f64::consts::FRAC_PI_2], &Cancel::new()).unwrap();
     assert!((areas[0] - 2.0).abs() < 1e-12 && (areas[1] - 1.0).abs() < 1e-12, "{areas:?}");
 }
@@ -104,7 +105,7 @@ fn an_upright_post_on_a_wider_one_casts_its_own_shadow() {
     let posts = shapes::joined(&shapes::cuboid(2.0, 2.0, 2.0), &narrow);
     let parsed = parsed(shapes::joined(&leaning, &posts));
     let table = Turntable { u: Vector::y(), v: -Vector::x(), ..Turntable::arbitrary(&parsed.measures, &Vector::z()) };
-    let mut slices = Slices::cut(&parsed.mesh, &table, 16, &Cancel::new()).unwrap();
+    let mut slices = Slices::cut(&parsed.wireframe, &table, 16, &Cancel::new()).unwrap();
     let areas = slices.areas(&[0.0], &Cancel::new()).unwrap();
     assert!((areas[0] - 10.0).abs() < 1e-12, "{areas:?}");
 }

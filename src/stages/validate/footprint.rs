@@ -1,7 +1,7 @@
 //! Large plane faces as pictures. Most samples lie on a few of them, and most of their images too: a bit then tells what
 //! a walk through the tree would.
 
-use crate::brep::{Mesh, MeshFace, PlacedFaceId};
+use crate::brep::{Mesh, MeshFace, PlacedFaceId, Wireframe};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector, any_perpendicular};
 use crate::silhouette::Silhouette;
@@ -75,7 +75,8 @@ impl Footprint {
         if !(reach(&normal) <= FLAT * radius && side <= MOST_PIXELS) {
             return Ok(None);
         }
-        let (face, raster) = (alone(mesh, id), Raster { centre, scale: 1.0 / (PIXEL * radius), side: side as usize });
+        let (face, raster) =
+            (Wireframe::of(&alone(mesh, id)), Raster { centre, scale: 1.0 / (PIXEL * radius), side: side as usize });
         let [x, y] = axes.map(|axis| raster.project(&face, &axis));
         let picture = raster.draw(&face, [&x, &y], cancel)?;
         Ok(Some(Self { normal, axes, raster, off: OFF * radius, picture }))
