@@ -67,6 +67,13 @@ impl Account {
         }
     }
 
+    /// Takes memory off the account that is still there, but for others now.
+    pub fn remove(&self, bytes: u64) {
+        if let Some(counter) = self.counter() {
+            counter.bytes.fetch_sub(bytes as i64, Ordering::Relaxed);
+        }
+    }
+
     /// Bytes taken and not given back.
     pub fn bytes(&self) -> u64 {
         self.counter().map_or(0, |counter| counter.bytes.load(Ordering::Relaxed).max(0) as u64)
@@ -109,6 +116,30 @@ fn say(next: usize) -> usize {
     place
 }
 
+/// Bytes that a list holds, also where it is empty; what its items hold themselves is not counted.
+#[allow(clippy::ptr_arg)] // A slice does not know its list's capacity.
+pub fn held<T>(list: &Vec<T>) -> usize {
+    list.capacity() * size_of::<T>()
+}
+
+/// Bytes of a piece of memory that is kept for other models at most: what a model of some thousand faces takes. What a
+/// large one took is given back.
+pub const MOST_KEPT: usize = 2 << 20;
+
+/// Empties a list and makes room for so many items. What was in it is not moved to where there is room.
+pub fn empty<T>(list: &mut Vec<T>, items: usize) {
+    list.clear();
+    if list.capacity() < items {
+        *list = Vec::new();
+        list.reserve_exact(items);
+    }
+}
+
+/// A list whose memory others will use, or an empty one where it is too large to be kept.
+pub fn kept<T>(list: Vec<T>) -> Vec<T> {
+    if held(&list) > MOST_KEPT { Vec::new() } else { list }
+}
+
 /// An allocator, counting.
 pub struct Counting<A>(pub A);
 
@@ -122,7 +153,6 @@ fn count(bytes: i64) {
 
 /// From this size on, bytes, a piece of memory is the system's again as soon as it is free. Smaller ones are taken and
 /// given back for every model: asking the system for them would cost a tenth of the time.
-#[cfg(target_env = "gnu")]
 const LARGE: i32 = 4 << 20;
 
 /// Places for each core that threads take memory from.
@@ -197,7 +227,8 @@ mod tests {
         assert_eq!((a.bytes(), b.bytes()), (1050, 0));
         taken(7)();
         a.within(give_back);
-        a.add(3);
+        a.add(5);
+        a.remove(2);
         assert_eq!(a.bytes(), 53);
         assert_eq!(b.within(|| a.within(|| CURRENT.get().0)), a.0);
         assert_eq!(CURRENT.get().0, NOBODY);

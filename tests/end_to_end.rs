@@ -40,6 +40,22 @@ fn a_folder_becomes_a_store_and_a_report() {
 }
 
 #[test]
+fn the_order_of_the_inputs_does_not_change_the_store() {
+    let dir = tempfile::tempdir().unwrap();
+    archive(dir.path());
+    let mut inputs: Vec<String> = MODELS.iter().map(|model| format!("models/{model}")).collect();
+    inputs.insert(3, "models/broken.step".into());
+    let mut stored = |store: &str| {
+        let args = ["run", "--jobs", "1", "--method", "symmetry", "--store", store].map(String::from);
+        let args: Vec<&str> = args.iter().chain(&inputs).map(String::as_str).collect();
+        assert_eq!(code(&run(dir.path(), &args)), 0);
+        inputs.reverse();
+        published(&dir.path().join(store))
+    };
+    assert!(stored("forwards") == stored("backwards"), "a model depends on those before it");
+}
+
+#[test]
 fn a_tar_stream_is_read_from_standard_input() {
     let dir = tempfile::tempdir().unwrap();
     let folder = archive(dir.path());

@@ -43,7 +43,7 @@ fn shapes(set: &str) -> Vec<(String, Vec<u8>)> {
     archive::visit(&[folder().join(format!("{set}.tar.xz"))], &limits, &archive::no_wait, &mut |member| {
         let name = member.id.rsplit(['!', '/']).next().unwrap().to_owned();
         all.push((name, member.bytes.unwrap()));
-        ControlFlow::Continue(())
+        ControlFlow::Continue(Vec::new())
     })
     .unwrap();
     all

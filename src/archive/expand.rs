@@ -3,6 +3,7 @@
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 
 use super::kind::Packing;
+use crate::memory::empty;
 
 /// What an archive that unpacks to too much fails with.
 pub const TOO_LARGE: &str = "it unpacks to more than the setting limits.expansion allows";
@@ -74,29 +75,38 @@ impl Read for Failing {
     }
 }
 
-/// All bytes of `reader`, if they are no more than `limit`. About `expected` are thought to come; `room` is asked before
-/// these are read, and again each time that twice as many come.
+/// All bytes of `reader`, if they are no more than `limit`, in the memory of `bytes`. About `expected` are thought to
+/// come; `room` is asked before these are read, and again each time that twice as many come.
 pub fn read_limited(
     mut reader: impl Read,
+    mut bytes: Vec<u8>,
     expected: u64,
     limit: u64,
     mut room: impl FnMut(u64) -> Result<(), String>,
 ) -> Result<Vec<u8>, String> {
     let most = limit.saturating_add(1);
-    let mut bytes = Vec::new();
-    let mut granted = 0;
+    bytes.clear();
+    let (before, mut granted) = (bytes.capacity(), 0);
     while bytes.len() as u64 == granted && granted < most {
         // One more than is expected, to see that it ends there.
         granted = expected.saturating_add(1).max(2 * granted).min(most);
         room(granted)?;
-        bytes.reserve_exact((granted as usize - bytes.len()).min(MOST_RESERVED));
+        let more = (granted as usize - bytes.len()).min(MOST_RESERVED);
+        if bytes.is_empty() {
+            empty(&mut bytes, more)
+        } else {
+            bytes.reserve_exact(more)
+        }
         let part = reader.by_ref().take(granted - bytes.len() as u64).read_to_end(&mut bytes);
         part.map_err(|e| format!("cannot be read: {e}"))?;
     }
     if bytes.len() as u64 > limit {
         return Err(format!("larger than {limit} bytes (setting limits.bytes)"));
     }
-    bytes.shrink_to_fit();
+    // An archive may have announced more than came.
+    if bytes.capacity() > before.max(2 * bytes.len()) {
+        bytes.shrink_to_fit();
+    }
     Ok(bytes)
 }
 

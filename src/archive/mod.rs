@@ -36,8 +36,8 @@ pub struct Member {
     pub bytes: std::result::Result<Vec<u8>, String>,
 }
 
-/// What is called for each member; `Break` ends the visit.
-pub type Each<'a> = dyn FnMut(Member) -> ControlFlow<()> + 'a;
+/// What is called for each member; gives memory that the next one may be read into. `Break` ends the visit.
+pub type Each<'a> = dyn FnMut(Member) -> ControlFlow<(), Vec<u8>> + 'a;
 
 /// What is asked before a member of so many bytes is read, and again where it unpacks to more; may wait until there is
 /// room. `Break` ends the visit.
@@ -53,8 +53,9 @@ pub fn no_wait(_: u64) -> ControlFlow<()> {
 ///
 /// Errors: an input that is not there. All else is the matter of one member.
 pub fn visit(inputs: &[PathBuf], limits: &Limits, room: &Room, each: &mut Each) -> Result<()> {
+    let mut memory = Vec::new();
     for (input, prefix) in inputs.iter().zip(prefixes(inputs)) {
-        let mut visit = Visit { limits, room, each, going: true };
+        let mut visit = Visit { limits, room, each, memory: &mut memory, going: true };
         if input.as_os_str() == "-" {
             visit.tar(&prefix, expand::sniffed(std::io::stdin().lock()), u64::MAX);
         } else {
@@ -109,6 +110,8 @@ struct Visit<'a, 'b> {
     limits: &'a Limits,
     room: &'a Room<'b>,
     each: &'a mut Each<'b>,
+    /// What the next member is read into.
+    memory: &'a mut Vec<u8>,
     /// Cleared when the caller has had enough.
     going: bool,
 }
@@ -116,7 +119,10 @@ struct Visit<'a, 'b> {
 impl Visit<'_, '_> {
     fn give(&mut self, id: String, bytes: std::result::Result<Vec<u8>, String>) {
         if self.going {
-            self.going = (self.each)(Member { id, bytes }).is_continue();
+            match (self.each)(Member { id, bytes }) {
+                ControlFlow::Continue(memory) => *self.memory = memory,
+                ControlFlow::Break(()) => self.going = false,
+            }
         }
     }
 
@@ -183,7 +189,8 @@ impl Visit<'_, '_> {
             if self.going { Ok(()) } else { Err("the run was stopped".to_owned()) }
         };
         let reader = expand::unpacked(packing, reader).map_err(|e| e.to_string())?;
-        expand::read_limited(reader, size, self.limits.bytes, room)
+        let memory = std::mem::take(self.memory);
+        expand::read_limited(reader, memory, size, self.limits.bytes, room)
     }
 
     /// A member of an archive whose name is `name`.

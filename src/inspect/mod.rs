@@ -75,10 +75,11 @@ fn visit(path: &Path, settings: &Settings, each: Visitor) -> Result<()> {
     let limits = Limits { bytes: settings.limits.bytes, expansion: settings.limits.expansion };
     archive::visit(std::slice::from_ref(&file), &limits, &archive::no_wait, &mut |found| {
         if member.as_ref().is_some_and(|member| !found.id.ends_with(member)) {
-            return ControlFlow::Continue(());
+            return ControlFlow::Continue(Vec::new());
         }
         let model = name(path, &file, &found.id, member.is_some());
-        each(model, found.bytes.map_err(|why| ModelError::new(Stage::Parse, why)))
+        let flow = each(model, found.bytes.map_err(|why| ModelError::new(Stage::Parse, why)));
+        flow.map_continue(|()| Vec::new())
     })
 }
 

@@ -86,10 +86,9 @@ impl Feed<'_> {
         let limits = archive::Limits { bytes: self.settings.limits.bytes, expansion: self.settings.limits.expansion };
         let (budget, bench, stop) = (self.budget, self.bench, self.stop);
         let told_to_stop = || stop.load(Ordering::Relaxed);
-        let flow = |going| if going { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
         let room = |bytes| {
             budget.wait_to_read(bytes, &|| bench.memory());
-            flow(!told_to_stop())
+            if told_to_stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         archive::visit(&self.settings.input, &limits, &room, &mut |mut member| {
             going = !told_to_stop();
@@ -97,7 +96,7 @@ impl Feed<'_> {
                 make_unique(&mut member.id, &mut ids);
                 going = self.member(member, &mut manifest, outbox);
             }
-            flow(going)
+            if going { ControlFlow::Continue(bench.files.take()) } else { ControlFlow::Break(()) }
         })?;
         manifest.complete = going && !told_to_stop();
         Ok(manifest)
@@ -138,6 +137,8 @@ impl Feed<'_> {
             self.budget.give_back(job.bytes);
             return false;
         }
+        // The job counts the bytes of the file; the memory that they are in may be larger.
+        job.cancel.account().add((bytes.capacity() - bytes.len()) as u64);
         let job = Arc::new(job);
         self.bench.enter(&job);
         outbox.send(Parcel { job, load: Ok(bytes) }).is_ok()

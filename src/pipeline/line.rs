@@ -8,7 +8,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use super::parcel::{Job, Parcel};
 use super::worker::{Bench, work};
 use crate::settings::Settings;
-use crate::stages::{ModelError, Stage};
+use crate::stages::{ModelError, Scratch, Stage};
 
 /// Stack of a worker, bytes: the default of a main thread, four times that of other threads, for the numerical
 /// libraries' recursion on large models.
@@ -42,13 +42,18 @@ impl<'scope, 'env, T: Send + 'scope> Line<'scope, 'env, T> {
         self.settings
     }
 
+    /// Where its workers work.
+    pub fn bench(&self) -> &'scope Bench {
+        self.bench
+    }
+
     /// The same line with the workers of one more stage.
     ///
     /// Errors: the system has no more threads.
     pub fn then<O: Send + 'scope>(
         mut self,
         stage: Stage,
-        step: impl Fn(&Job, T) -> Result<O, ModelError> + Send + Sync + 'scope,
+        step: impl Fn(&Job, T, &mut Scratch) -> Result<O, ModelError> + Send + Sync + 'scope,
     ) -> std::io::Result<Line<'scope, 'env, O>>
     where
         T: 'static,

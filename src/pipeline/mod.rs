@@ -14,6 +14,7 @@ mod record;
 mod report;
 mod resume;
 mod run;
+mod shelf;
 mod steps;
 mod worker;
 

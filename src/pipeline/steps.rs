@@ -2,21 +2,22 @@
 
 use super::parcel::Job;
 use super::random_pose;
+use super::shelf::Shelf;
 use crate::alignment::mpa::Sweep;
 use crate::alignment::{self, Given, Method};
 use crate::cancel::Cancelled;
 use crate::geometry::{Chirality, Frame, Isometry, Matrix, Vector};
 use crate::render;
 use crate::settings::Settings;
-use crate::stages::corner_filter::{Outline, corner_filter};
+use crate::stages::corner_filter::{Outline, corner_filter_in};
 use crate::stages::descriptor::{Descriptor, descriptor};
 use crate::stages::isometry::{Candidates, isometry};
 use crate::stages::merge::{Symmetries, merge};
 use crate::stages::pair_match::{Matches, pair_match};
-use crate::stages::parse::{Parsed, parse};
+use crate::stages::parse::{Parsed, parse_in};
 use crate::stages::projection_sweep::{CanonicalFrame, Shadows, Slices, projection_sweep};
 use crate::stages::validate::{Validated, validate};
-use crate::stages::{ModelError, Stage};
+use crate::stages::{ModelError, Scratch, Stage};
 
 /// After parse.
 pub struct Posed {
@@ -85,18 +86,23 @@ type Step<T> = Result<T, ModelError>;
 
 /// The eight stages.
 #[derive(Clone, Copy)]
-pub struct Steps<'a>(pub &'a Settings);
+pub struct Steps<'a> {
+    pub settings: &'a Settings,
+    /// Where the bytes of files go that have been read.
+    pub files: &'a Shelf<Vec<u8>>,
+}
 
 impl Steps<'_> {
-    pub fn parse(self, job: &Job, bytes: Vec<u8>) -> Step<Posed> {
-        let pose = self.0.random_pose.map(|seed| random_pose(seed, &job.hash));
-        let parsed = parse(&bytes, &self.0.parse, pose.as_ref(), &job.cancel)?;
+    pub fn parse(self, job: &Job, bytes: Vec<u8>, scratch: &mut Scratch) -> Step<Posed> {
+        let pose = self.settings.random_pose.map(|seed| random_pose(seed, &job.hash));
+        let parsed = parse_in(&mut scratch.parse, &bytes, &self.settings.parse, pose.as_ref(), &job.cancel)?;
+        self.files.put_back(bytes, job.cancel.account());
         self.check_size(&parsed)?;
         Ok(Posed { parsed, pose: pose.unwrap_or_else(identity) })
     }
 
     fn check_size(self, parsed: &Parsed) -> Step<()> {
-        let limits = &self.0.limits;
+        let limits = &self.settings.limits;
         let (faces, triangles) = (parsed.mesh.faces.len(), parsed.mesh.triangles.len());
         let too_many = |count, what, limit| {
             ModelError::new(Stage::Parse, format!("{count} {what}, more than {limit} (setting limits.{what})"))
@@ -110,40 +116,42 @@ impl Steps<'_> {
         }
     }
 
-    pub fn corner_filter(self, job: &Job, posed: Posed) -> Step<Outlined> {
-        let outlines = corner_filter(&posed.parsed, &self.0.corner_filter, &job.cancel)?;
+    pub fn corner_filter(self, job: &Job, posed: Posed, scratch: &mut Scratch) -> Step<Outlined> {
+        let scratch = &mut scratch.corner_filter;
+        let outlines = corner_filter_in(scratch, &posed.parsed, &self.settings.corner_filter, &job.cancel)?;
         Ok(Outlined { posed, outlines })
     }
 
     pub fn pair_match(self, job: &Job, outlined: Outlined) -> Step<Matched> {
         let Outlined { posed, outlines } = &outlined;
-        let matches = pair_match(&posed.parsed, outlines, &self.0.pair_match, &job.cancel)?;
+        let matches = pair_match(&posed.parsed, outlines, &self.settings.pair_match, &job.cancel)?;
         Ok(Matched { outlined, matches })
     }
 
     pub fn isometry(self, job: &Job, matched: Matched) -> Step<Proposed> {
         let Outlined { posed, outlines } = &matched.outlined;
-        let candidates = isometry(&posed.parsed, outlines, &matched.matches, &self.0.isometry, &job.cancel)?;
+        let candidates = isometry(&posed.parsed, outlines, &matched.matches, &self.settings.isometry, &job.cancel)?;
         Ok(Proposed { matched, candidates })
     }
 
     pub fn validate(self, job: &Job, proposed: Proposed) -> Step<Checked> {
         let Proposed { matched, candidates } = proposed;
         let Outlined { posed, outlines } = &matched.outlined;
-        let options = &self.0.validate;
+        let options = &self.settings.validate;
         let validated = validate(&posed.parsed, outlines, &matched.matches, &candidates, options, &job.cancel)?;
         Ok(Checked { matched, validated })
     }
 
     pub fn merge(self, job: &Job, checked: Checked) -> Step<Ranked> {
         let Matched { outlined: Outlined { posed, outlines }, matches } = checked.matched;
-        let symmetries = merge(&posed.parsed, &outlines, &matches, &checked.validated, &self.0.merge, &job.cancel)?;
+        let symmetries =
+            merge(&posed.parsed, &outlines, &matches, &checked.validated, &self.settings.merge, &job.cancel)?;
         Ok(Ranked { posed, symmetries })
     }
 
     pub fn projection_sweep(self, job: &Job, ranked: Ranked) -> Step<Framed> {
         let Ranked { posed: Posed { parsed, pose }, symmetries } = &ranked;
-        let (options, cancel) = (&self.0.projection_sweep, &job.cancel);
+        let (options, cancel) = (&self.settings.projection_sweep, &job.cancel);
         let canonical = projection_sweep(parsed, symmetries, options, cancel)?;
         let shadows = |axis: &Vector, start: &Vector, slices| {
             let mut slices = Slices::about(parsed, axis, start, slices, cancel)?;
@@ -151,14 +159,16 @@ impl Steps<'_> {
         };
         let given = Given { measures: &parsed.measures, symmetry: &canonical.frame, pose, shadows: &shadows };
         let frame = |&method| Ok((method, alignment::frame(method, &parsed.mesh, &given, cancel)?));
-        let frames: Result<_, Cancelled> = self.0.methods.iter().map(frame).collect();
+        let frames: Result<_, Cancelled> = self.settings.methods.iter().map(frame).collect();
         let frames = frames.map_err(|c| ModelError::cancelled(Stage::ProjectionSweep, c))?;
         Ok(Framed { ranked, canonical, frames })
     }
 
     pub fn descriptor(self, job: &Job, framed: Framed) -> Step<Described> {
         let Parsed { mesh, wireframe, measures, .. } = &framed.ranked.posed.parsed;
-        let of = |(_, frame): &(Method, Frame)| descriptor(wireframe, measures, frame, &self.0.descriptor, &job.cancel);
+        let of = |(_, frame): &(Method, Frame)| {
+            descriptor(wireframe, measures, frame, &self.settings.descriptor, &job.cancel)
+        };
         let descriptors = framed.frames.iter().map(of).collect::<Step<_>>()?;
         let thumbnail = render::thumbnail(mesh, measures, &framed.canonical.frame, &job.cancel)
             .map_err(|c| ModelError::cancelled(Stage::Descriptor, c))?;

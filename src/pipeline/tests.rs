@@ -68,15 +68,15 @@ impl Fake {
     /// Text that is no number fails in parse, a negative number panics in merge, 1000 and more never ends.
     fn line<'s, 'e>(self: &Arc<Self>, line: Line<'s, 'e, Vec<u8>>) -> io::Result<Line<'s, 'e, ModelRecord>> {
         let fake = Arc::clone(self);
-        line.then(Stage::Parse, |_, bytes| {
+        line.then(Stage::Parse, |_, bytes, _| {
             let text = String::from_utf8_lossy(&bytes).trim().to_owned();
             text.parse::<f64>().map_err(|e| ModelError::at(Stage::Parse, 3, e.to_string()))
         })?
-        .then(Stage::Merge, |_, number| {
+        .then(Stage::Merge, |_, number, _| {
             assert!(number >= 0.0, "below zero");
             Ok(number)
         })?
-        .then(Stage::Descriptor, move |job, number| {
+        .then(Stage::Descriptor, move |job, number, _| {
             if number >= 1000.0 {
                 loop {
                     job.cancel.check().map_err(|c| ModelError::cancelled(Stage::Descriptor, c))?;

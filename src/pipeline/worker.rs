@@ -10,7 +10,8 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 use super::guard::guarded;
 use super::parcel::{Allowed, Job, Parcel, Passed};
-use crate::stages::{ModelError, Stage};
+use super::shelf::Shelf;
+use crate::stages::{ModelError, Scratch, Stage};
 
 /// Takes parcels, works on those that have not failed, passes all of them on.
 pub fn work<I, O>(
@@ -18,10 +19,10 @@ pub fn work<I, O>(
     bench: &Bench,
     inbox: &Receiver<Parcel<I>>,
     outbox: &Sender<Parcel<O>>,
-    step: &(dyn Fn(&Job, I) -> Result<O, ModelError> + Sync),
+    step: &(dyn Fn(&Job, I, &mut Scratch) -> Result<O, ModelError> + Sync),
 ) {
     for Parcel { job, load } in inbox {
-        let load = load.and_then(|input| bench.work_on(stage, &job, || step(&job, input)));
+        let load = load.and_then(|input| bench.work_on(stage, &job, |scratch| step(&job, input, scratch)));
         if outbox.send(Parcel { job, load }).is_err() {
             return; // nobody downstream: stop quietly
         }
@@ -35,6 +36,9 @@ pub struct Bench {
     allowed: Allowed,
     busy: [AtomicUsize; Stage::ALL.len()],
     in_flight: Mutex<BTreeMap<u64, Arc<Job>>>,
+    /// What steps work in, and what files are read into.
+    pub scratch: Shelf<Scratch>,
+    pub files: Shelf<Vec<u8>>,
     pace: Mutex<Pace>,
 }
 
@@ -71,6 +75,8 @@ impl Bench {
             allowed,
             busy: Default::default(),
             in_flight: Mutex::default(),
+            scratch: Shelf::default(),
+            files: Shelf::default(),
             pace: Mutex::new(Pace::start()),
         }
     }
@@ -80,12 +86,18 @@ impl Bench {
         &self,
         stage: Stage,
         job: &Job,
-        step: impl FnOnce() -> Result<T, ModelError>,
+        step: impl FnOnce(&mut Scratch) -> Result<T, ModelError>,
     ) -> Result<T, ModelError> {
         let _permit = Permit::take(&self.permits);
         self.busy[stage as usize].fetch_add(1, Ordering::Relaxed);
         job.start(stage);
-        let result = job.cancel.account().within(|| guarded(stage, step));
+        let account = job.cancel.account();
+        let result = account.within(|| {
+            let mut scratch = self.scratch.lend(account);
+            let made = guarded(stage, || step(&mut scratch))?;
+            self.scratch.put_back(scratch, account);
+            Ok(made)
+        });
         let passed = job.stop();
         self.busy[stage as usize].fetch_sub(1, Ordering::Relaxed);
         passed.map_or(result, |passed| Err(self.failure(stage, passed)))
@@ -116,9 +128,10 @@ impl Bench {
         self.jobs().values().for_each(|job| job.check(self.allowed, starved));
     }
 
-    /// Bytes that all models in flight take together.
+    /// Bytes that all models in flight take together, and those that are kept for the next ones.
     pub fn memory(&self) -> u64 {
-        self.jobs().values().map(|job| job.cancel.account().bytes()).sum()
+        let taken: u64 = self.jobs().values().map(|job| job.cancel.account().bytes()).sum();
+        taken + self.scratch.bytes() + self.files.bytes()
     }
 
     /// Cancels all models in flight.
@@ -185,7 +198,7 @@ mod tests {
             feed.send(Parcel { job: job(number), load }).unwrap();
         }
         drop(feed);
-        work(Stage::Merge, &bench, &inbox, &outbox, &|_, divisor: i32| Ok(12 / divisor));
+        work(Stage::Merge, &bench, &inbox, &outbox, &|_, divisor: i32, _| Ok(12 / divisor));
         let loads: Vec<_> = results.try_iter().map(|parcel| parcel.load).collect();
         assert_eq!((&loads[0], &loads[3]), (&Ok(3), &Ok(2)));
         assert_eq!(loads[1], Err(ModelError::new(Stage::Parse, "torn")));
@@ -201,7 +214,7 @@ mod tests {
             for number in 0..8 {
                 let (bench, now, most) = (&bench, &now, &most);
                 scope.spawn(move || {
-                    bench.work_on(Stage::Parse, &job(number), || {
+                    bench.work_on(Stage::Parse, &job(number), |_| {
                         most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
                         std::thread::sleep(Duration::from_millis(5));
                         now.fetch_sub(1, Ordering::SeqCst);
@@ -219,7 +232,7 @@ mod tests {
         bench.enter(&endless);
         let result = std::thread::scope(|scope| {
             let worker = scope.spawn(|| {
-                bench.work_on(Stage::Validate, &endless, || {
+                bench.work_on(Stage::Validate, &endless, |_| {
                     endless.cancel.account().add(bytes);
                     let end = Instant::now() + Duration::from_secs(20);
                     while Instant::now() < end {

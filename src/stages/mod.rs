@@ -72,6 +72,23 @@ impl Stage {
     }
 }
 
+/// Memory that stages fill anew for each model instead of taking it anew. What is in it means nothing: a stage begins by
+/// emptying its part.
+#[derive(Default)]
+pub struct Scratch {
+    /// Of [`parse::parse_in`].
+    pub parse: parse::Scratch,
+    /// Of [`corner_filter::corner_filter_in`].
+    pub corner_filter: corner_filter::Scratch,
+}
+
+impl Scratch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        self.parse.bytes() + self.corner_filter.bytes()
+    }
+}
+
 /// Why one model was lost; it travels as data and the run goes on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
 #[error("{}: {why}{}", stage.name(), entity.map(|e| format!(" (#{e})")).unwrap_or_default())]

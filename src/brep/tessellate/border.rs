@@ -7,6 +7,7 @@ use super::Few;
 use super::edges::EdgeLines;
 use crate::brep::{EdgeId, EdgeUse, Face, Uses};
 use crate::geometry::Point;
+use crate::memory::held;
 
 /// Seams of one face that are taken out: each costs a pass over the loop, and what is left bounds nothing.
 const MOST_SEAMS: usize = 256;
@@ -51,6 +52,11 @@ impl Border {
         }
         self.seams.extend(seams.into_iter().map(|edge| half_way(edge, lines)));
         Some(self)
+    }
+
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        held(&self.points) + held(&self.middles) + held(&self.ends) + held(&self.seams)
     }
 
     /// Adds the polyline of a chain, if it has two points at least.

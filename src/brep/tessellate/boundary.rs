@@ -6,6 +6,7 @@ use super::border::Border;
 use super::chart::{Chart, Uv};
 use crate::brep::{Placement, Surface};
 use crate::geometry::{Point, polygon};
+use crate::memory::held;
 
 /// Points nearer than this share of what is too far are taken to be where they should be.
 const GOOD: f64 = 0.02;
@@ -82,6 +83,12 @@ pub(super) struct Paths {
 }
 
 impl Paths {
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        let of = |path: &Path| held(&path.points) + held(&path.uv) + held(&path.middles);
+        held(&self.all) + self.all.iter().map(of).sum::<usize>()
+    }
+
     fn clear(&mut self) {
         self.count = 0;
     }

@@ -10,7 +10,9 @@ pub(super) struct Columns<'a> {
     along: usize,
     from: f64,
     width: f64,
-    members: Vec<Vec<u32>>,
+    /// The segments of one column after the other, and where those of each column end.
+    members: Vec<u32>,
+    ends: Vec<usize>,
 }
 
 impl<'a> Columns<'a> {
@@ -18,11 +20,27 @@ impl<'a> Columns<'a> {
         let ends = segments.iter().flatten().map(|p| p[along]);
         let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
         let count = (segments.len() as f64).sqrt().ceil().max(1.0);
-        let members = vec![Vec::new(); count as usize];
-        let mut columns = Self { segments, along, from: low, width: (high - low) / count, members };
-        for (i, [a, b]) in segments.iter().enumerate() {
+        let (ends, members) = (vec![0; count as usize], Vec::new());
+        let mut columns = Self { segments, along, from: low, width: (high - low) / count, members, ends };
+        let touched = |columns: &Self, [a, b]: &[Uv; 2]| {
             let (first, last) = (columns.at(a), columns.at(b));
-            columns.members[first.min(last)..=first.max(last)].iter_mut().for_each(|m| m.push(i as u32));
+            first.min(last)..=first.max(last)
+        };
+        for segment in segments {
+            let touched = touched(&columns, segment);
+            columns.ends[touched].iter_mut().for_each(|end| *end += 1);
+        }
+        let mut sum = 0;
+        for end in &mut columns.ends {
+            sum += std::mem::replace(end, sum);
+        }
+        // Each column's end grows from its start as its members come.
+        columns.members.resize(sum, 0);
+        for (i, segment) in segments.iter().enumerate() {
+            for column in touched(&columns, segment) {
+                columns.members[columns.ends[column]] = i as u32;
+                columns.ends[column] += 1;
+            }
         }
         columns
     }
@@ -30,12 +48,14 @@ impl<'a> Columns<'a> {
     /// The column of a point; the last one also for what is beyond or not a number.
     fn at(&self, p: &Uv) -> usize {
         // `as` saturates.
-        (((p[self.along] - self.from) / self.width) as usize).min(self.members.len() - 1)
+        (((p[self.along] - self.from) / self.width) as usize).min(self.ends.len() - 1)
     }
 
     /// How many segments pass below `p`.
     pub fn below(&self, p: &Uv) -> usize {
-        let near = self.members[self.at(p)].iter().map(|&i| &self.segments[i as usize]);
+        let column = self.at(p);
+        let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
+        let near = self.members[start..self.ends[column]].iter().map(|&i| &self.segments[i as usize]);
         near.filter(|[a, b]| crosses_below(a, b, p, self.along)).count()
     }
 }

@@ -11,6 +11,7 @@ use super::interior::Grid;
 use super::strip;
 use super::triangulate::{Chains, Room, delaunay, doubled_area, ears, zip};
 use crate::geometry::{Point, Point2, polygon};
+use crate::memory::held;
 
 /// Regions without a triangle larger than this share of the whole are left out.
 const EMPTY: f64 = 1e-9;
@@ -27,6 +28,11 @@ pub(super) struct Patch {
 }
 
 impl Patch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        held(&self.points) + held(&self.uv) + held(&self.triangles)
+    }
+
     pub fn clear(&mut self) {
         self.points.clear();
         self.uv.clear();

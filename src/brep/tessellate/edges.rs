@@ -6,6 +6,7 @@ use super::Options;
 use crate::brep::{Curve, EdgeId, Model, Surface};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Point, Vector};
+use crate::memory::{empty, held};
 
 /// A curve is halved this often at most.
 const MAX_DEPTH: u32 = 9;
@@ -15,6 +16,7 @@ const FREE_FORM_SEGMENTS: usize = 4;
 const MAX_POINTS: usize = 4096;
 
 /// The polylines of all edges of a model in one arena.
+#[derive(Default)]
 pub(super) struct EdgeLines {
     /// Points on the edges.
     points: Vec<Point>,
@@ -40,24 +42,32 @@ pub(super) struct Fineness {
 }
 
 impl EdgeLines {
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        let points = held(&self.points) + held(&self.middles);
+        points + held(&self.ranges) + held(&self.free_form) + held(&self.parameters)
+    }
+
     /// Tessellates the edges; `spans`: where each begins and ends on its curve, `most_points`: of all together.
-    pub fn of(
+    pub fn fill(
+        &mut self,
         model: &Model,
         spans: &[Option<[f64; 2]>],
         fineness: &Fineness,
         most_points: usize,
         cancel: &Cancel,
-    ) -> Result<Self, Cancelled> {
-        let free_form = edges_of_free_form_faces(model);
-        let [points, middles] = [(); 2].map(|()| Vec::with_capacity(4 * spans.len()));
-        let (ranges, parameters) = (Vec::with_capacity(spans.len()), Vec::new());
-        let mut lines = Self { points, middles, ranges, free_form, most_points, parameters };
+    ) -> Result<(), Cancelled> {
+        empty(&mut self.points, 4 * spans.len());
+        empty(&mut self.middles, 4 * spans.len());
+        empty(&mut self.ranges, spans.len());
+        self.most_points = most_points;
+        mark_edges_of_free_form_faces(model, &mut self.free_form);
         for (index, span) in spans.iter().enumerate() {
             cancel.check()?;
-            let range = lines.add(model, EdgeId(index as u32), *span, fineness);
-            lines.ranges.push(range);
+            let range = self.add(model, EdgeId(index as u32), *span, fineness);
+            self.ranges.push(range);
         }
-        Ok(lines)
+        Ok(())
     }
 
     /// Points of all edges.
@@ -127,8 +137,9 @@ impl EdgeLines {
     }
 }
 
-fn edges_of_free_form_faces(model: &Model) -> Vec<bool> {
-    let mut flags = vec![false; model.edges.len()];
+fn mark_edges_of_free_form_faces(model: &Model, flags: &mut Vec<bool>) {
+    empty(flags, model.edges.len());
+    flags.resize(model.edges.len(), false);
     for face in &model.faces {
         let crate::brep::FaceGeometry::Trimmed { surface, .. } = &face.geometry else { continue };
         if matches!(
@@ -138,7 +149,6 @@ fn edges_of_free_form_faces(model: &Model) -> Vec<bool> {
             face.loops.iter().flat_map(|l| &l.uses).for_each(|u| flags[u.edge.index()] = true);
         }
     }
-    flags
 }
 
 /// The largest step of the angle on a circle of radius `radius`.

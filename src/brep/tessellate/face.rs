@@ -13,6 +13,7 @@ use super::triangulate::Room;
 use crate::brep::{Face, FaceGeometry, Facets, Model, Surface};
 use crate::cancel::Cancel;
 use crate::geometry::Point;
+use crate::memory::{empty, held};
 
 /// Points further than this share of the model's size from their surface do not belong to it.
 const FAR: f64 = 0.01;
@@ -35,7 +36,7 @@ const HELPS: f64 = 0.9;
 pub(super) struct Context<'a> {
     pub model: &'a Model,
     pub cancel: &'a Cancel,
-    pub lines: EdgeLines,
+    pub lines: &'a mut EdgeLines,
     /// Edges without length.
     pub degenerate: Vec<bool>,
     pub fineness: Fineness,
@@ -96,7 +97,28 @@ pub(super) struct Work {
     sides: Sides,
 }
 
+impl Scratch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        let Work { mapped, paths, patch, other, room, sides } = &self.work;
+        let made = paths.bytes() + patch.bytes() + other.bytes() + room.bytes() + sides.bytes();
+        self.border.bytes() + held(mapped) + made
+    }
+}
+
 impl Meshes {
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        held(&self.points) + held(&self.triangles) + held(&self.faces)
+    }
+
+    /// None, with room for so many faces, and for as many points as triangles.
+    pub fn empty(&mut self, faces: usize, points: usize) {
+        empty(&mut self.points, points);
+        empty(&mut self.triangles, points);
+        empty(&mut self.faces, faces);
+    }
+
     /// Tessellates a face, or says why it cannot be.
     pub fn make(
         &mut self,
@@ -108,7 +130,7 @@ impl Meshes {
         let Measured { integrals, plain, warning } = match &face.geometry {
             FaceGeometry::Trimmed { surface, same_sense } => {
                 let Scratch { border, work } = scratch;
-                let border = border.fill(face, &context.lines, &context.degenerate);
+                let border = border.fill(face, context.lines, &context.degenerate);
                 let border = border.ok_or("a border of too many points")?;
                 trimmed(context, (surface, *same_sense), border, reference, work)
                     .or_else(|why| filled(context, face, border, reference, work, why))?

@@ -10,6 +10,7 @@ use super::domain::Patch;
 use super::triangulate::doubled_area;
 use crate::brep::Surface;
 use crate::geometry::{Point, Vector};
+use crate::memory::held;
 
 /// The centre of a triangle, as weights of its corners.
 const MIDDLE: [f64; 3] = [1.0 / 3.0; 3];
@@ -122,6 +123,11 @@ pub(super) struct Sides {
 }
 
 impl Sides {
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        held(&self.all) + held(&self.ends)
+    }
+
     /// Finds each side of a patch once, in the order of their ends.
     fn fill(&mut self, patch: &Patch, areas: impl Iterator<Item = f64>) {
         let Self { all, ends } = self;

@@ -47,7 +47,7 @@ use super::{EdgeId, Face, Mesh, Model, Skipped};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::Point;
 use edges::{EdgeLines, Fineness};
-use face::{Context, Meshes, Scratch};
+use face::{Context, Meshes};
 use place::Place;
 
 /// What a face has one or two of in most cases, such as loops.
@@ -84,15 +84,42 @@ const BATCH: usize = 512;
 /// Faces of a batch that a thread takes at a time.
 const PART: usize = 8;
 
+/// Memory that is filled anew for each model.
+#[derive(Default)]
+pub struct Scratch {
+    lines: EdgeLines,
+    face: face::Scratch,
+    meshes: Meshes,
+}
+
+impl Scratch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        self.lines.bytes() + self.face.bytes() + self.meshes.bytes()
+    }
+}
+
 /// The mesh of all placed faces, the faces left out (with the reason), and warnings.
+pub type Tessellated = (Mesh, Vec<Skipped>, Vec<String>);
+
+/// Tessellates one model.
 ///
 /// # Errors
 /// Only when cancelled.
-pub fn tessellate(
+pub fn tessellate(model: &Model, options: &Options, cancel: &Cancel) -> Result<Tessellated, Cancelled> {
+    tessellate_in(&mut Scratch::default(), model, options, cancel)
+}
+
+/// [`tessellate`] in memory that others have done with.
+///
+/// # Errors
+/// Only when cancelled.
+pub fn tessellate_in(
+    scratch: &mut Scratch,
     model: &Model,
     options: &Options,
     cancel: &Cancel,
-) -> Result<(Mesh, Vec<Skipped>, Vec<String>), Cancelled> {
+) -> Result<Tessellated, Cancelled> {
     let spans = spans(model, cancel)?;
     let places = place::places(model, &spans);
     let size = place::model_size(model, &places);
@@ -102,22 +129,24 @@ pub fn tessellate(
     }
     let part_size = size / place::largest_scale(model);
     let reference = references(model, &places);
+    let Scratch { lines, face, meshes } = scratch;
     let most = options.max_triangles;
     let mut coarser = 1.0;
     loop {
         let fineness = Fineness::new(options, part_size).coarser(coarser);
-        let lines = EdgeLines::of(model, &spans, &fineness, most, cancel)?;
-        let degenerate = (0..spans.len()).map(|e| is_point(&lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
+        lines.fill(model, &spans, &fineness, most, cancel)?;
+        let degenerate = (0..spans.len()).map(|e| is_point(lines, EdgeId(e as u32), 1e-7 * part_size)).collect();
         let reference = reference.clone();
-        let mut context = Context { model, cancel, lines, degenerate, fineness, coarser, size: part_size, reference };
-        let mut meshes = face_meshes(&context, most)?;
+        let mut context =
+            Context { model, cancel, lines: &mut *lines, degenerate, fineness, coarser, size: part_size, reference };
+        face_meshes(&context, most, face, meshes)?;
         let share = place::triangles(model, &meshes.faces) as f64 / most as f64;
         if share > 1.0 && coarser < COARSEST {
             // The second time nothing is left to chance.
             coarser = if coarser > 1.0 { COARSEST } else { (1.2 * share.sqrt()).min(COARSEST) };
             continue;
         }
-        refine::refine(&mut context, &spans, &mut meshes, cancel)?;
+        refine::refine(&mut context, &spans, meshes, face, cancel)?;
         let warning = context.lines.warning();
         let (mesh, skipped, mut warnings) = place::place(model, meshes, most, cancel)?.finish();
         warnings.extend(warning);
@@ -156,41 +185,41 @@ fn references(model: &Model, places: &[Option<Place>]) -> Vec<Point> {
 }
 
 /// The meshes of the faces in their order, of the first ones only where these have more than `most` triangles.
-fn face_meshes(context: &Context, most: usize) -> Result<Meshes, Cancelled> {
+fn face_meshes(
+    context: &Context,
+    most: usize,
+    scratch: &mut face::Scratch,
+    meshes: &mut Meshes,
+) -> Result<(), Cancelled> {
     let (faces, account) = (&context.model.faces, context.cancel.account());
-    let mut meshes = Meshes::default();
-    meshes.faces.reserve_exact(faces.len());
     // Most points are those of edges, each in two faces.
-    let points = context.lines.count().min(most);
-    meshes.points.reserve(2 * points);
-    meshes.triangles.reserve(2 * points);
-    let mut scratch = Scratch::default();
+    meshes.empty(faces.len(), 2 * context.lines.count().min(most));
     for (batch, references) in faces.chunks(BATCH).zip(context.reference.chunks(BATCH)) {
         if faces.len() < PARALLEL_FACES {
-            add_meshes(context, (batch, references), &mut scratch, &mut meshes)?;
+            add_meshes(context, (batch, references), scratch, meshes)?;
         } else {
-            let of_thread = |scratch: &mut Scratch, part| {
+            let of_thread = |scratch: &mut face::Scratch, part| {
                 account.within(|| {
                     let mut made = Meshes::default();
                     add_meshes(context, part, scratch, &mut made).map(|()| made)
                 })
             };
             let parts = batch.par_chunks(PART).zip(references.par_chunks(PART));
-            let made: Vec<Meshes> = parts.map_init(Scratch::default, of_thread).collect::<Result<_, _>>()?;
+            let made: Vec<Meshes> = parts.map_init(face::Scratch::default, of_thread).collect::<Result<_, _>>()?;
             made.into_iter().for_each(|made| meshes.append(made));
         }
         if meshes.triangles.len() > most {
             break;
         }
     }
-    Ok(meshes)
+    Ok(())
 }
 
 /// Tessellates some faces, each with the point that its integrals refer to.
 fn add_meshes(
     context: &Context,
     (faces, references): (&[Face], &[Point]),
-    scratch: &mut Scratch,
+    scratch: &mut face::Scratch,
     meshes: &mut Meshes,
 ) -> Result<(), Cancelled> {
     for (face, reference) in faces.iter().zip(references) {

@@ -79,7 +79,12 @@ fn in_all(model: &Model, faces: &[Result<FaceMesh, String>], size: fn(&FaceMesh)
 }
 
 /// Puts every face where each occurrence of its body has it.
-pub(super) fn place(model: &Model, meshes: Meshes, max_triangles: usize, cancel: &Cancel) -> Result<Placed, Cancelled> {
+pub(super) fn place(
+    model: &Model,
+    meshes: &mut Meshes,
+    max_triangles: usize,
+    cancel: &Cancel,
+) -> Result<Placed, Cancelled> {
     let mut placed = Placed::default();
     let sizes = |size| in_all(model, &meshes.faces, size).min(max_triangles);
     placed.mesh.points.reserve_exact(sizes(|face| face.points.len()));
@@ -90,14 +95,14 @@ pub(super) fn place(model: &Model, meshes: Meshes, max_triangles: usize, cancel:
         for id in model.faces_of(occurrence.body) {
             match meshes.faces.get(id.index()) {
                 Some(Ok(face)) if placed.mesh.triangles.len() + face.triangles.len() <= max_triangles => {
-                    placed.add(index as u32, &occurrence.placement, scale, id, &meshes, face);
+                    placed.add(index as u32, &occurrence.placement, scale, id, meshes, face);
                 }
                 Some(Err(_)) => {}
                 _ => placed.leave_out(model.faces[id.index()].entity, max_triangles),
             }
         }
     }
-    for (face, result) in model.faces.iter().zip(meshes.faces) {
+    for (face, result) in model.faces.iter().zip(meshes.faces.drain(..)) {
         match result {
             Ok(mesh) => placed.warnings.extend(mesh.warning),
             Err(why) => placed.skipped.push(Skipped { entity: face.entity, why }),

@@ -19,9 +19,9 @@ pub(super) fn refine(
     context: &mut Context,
     spans: &[Option<[f64; 2]>],
     meshes: &mut Meshes,
+    scratch: &mut Scratch,
     cancel: &Cancel,
 ) -> Result<(), Cancelled> {
-    let mut scratch = Scratch::default();
     for round in 1..=ROUNDS {
         let edges = coarse_edges(context, &meshes.faces);
         if edges.is_empty() {
@@ -36,7 +36,7 @@ pub(super) fn refine(
         let touched = |face: &Face| edges_of(face).any(|e| edges.contains(&e));
         let all = context.model.faces.iter().zip(&context.reference).enumerate().take(meshes.faces.len());
         for (i, (face, reference)) in all.filter(|(_, (face, _))| touched(face)) {
-            meshes.faces[i] = meshes.make(context, face, reference, &mut scratch);
+            meshes.faces[i] = meshes.make(context, face, reference, scratch);
             cancel.check()?;
         }
     }

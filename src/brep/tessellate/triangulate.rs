@@ -8,6 +8,7 @@ use std::cell::Cell;
 use std::collections::VecDeque;
 
 use super::chart::Uv;
+use crate::memory::held;
 
 /// Crossings that are always split, and how many are split for each point: real borders cross themselves here and
 /// there, scribbles as often as there are pairs of segments.
@@ -39,6 +40,14 @@ pub(super) struct Chains {
     pub upper: Vec<u32>,
     /// The ring's points, where the chains run along v.
     pub turned: Vec<Uv>,
+}
+
+impl Room {
+    /// Bytes of memory that it holds, but for the ears' own, which are bounded by [`MOST_EARS`].
+    pub fn bytes(&self) -> usize {
+        let Chains { ring, lower, upper, turned } = &self.chains;
+        [&self.holes, &self.corners, ring, lower, upper].map(held).iter().sum::<usize>() + held(turned)
+    }
 }
 
 /// Triangles of a polygon with holes, all counter-clockwise; `rings`: where each ring starts, the outer one first,

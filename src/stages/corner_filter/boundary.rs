@@ -4,6 +4,7 @@ use super::edges::EdgeShapes;
 use super::{InnerLoop, LocalOutline, LocalOutlines};
 use crate::brep::{EdgeUse, FaceGeometry, FaceId, Model, Surface, VertexId};
 use crate::geometry::{Axis, Point, Vector};
+use crate::memory::{empty, held};
 
 /// A closed chain of edges around a maximal face.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +52,11 @@ struct OneLoop {
 }
 
 impl Loops {
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        held(&self.loops) + held(&self.corners) + held(&self.points)
+    }
+
     fn clear(&mut self) {
         self.loops.clear();
         self.corners.clear();
@@ -73,18 +79,18 @@ impl Loops {
 /// Finds the loops of one group of faces after the other, in the same memory.
 pub(super) struct Tracer<'a> {
     model: &'a Model,
-    pub shapes: EdgeShapes,
+    pub shapes: &'a mut EdgeShapes,
     /// An edge shorter than this is a pole, mm.
     pub shortest: f64,
     /// Radians.
     corner_angle: f64,
-    pub loops: Loops,
-    room: Room,
+    pub loops: &'a mut Loops,
+    room: &'a mut Room,
 }
 
 /// What is filled anew for each group.
 #[derive(Default)]
-struct Room {
+pub(super) struct Room {
     /// Uses of edges, and whether their loop is called the outer one.
     uses: Vec<(EdgeUse, bool)>,
     /// How often the group uses each edge of the model; all zero between two groups.
@@ -96,17 +102,32 @@ struct Room {
     chain: Vec<usize>,
 }
 
+impl Room {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        held(&self.uses) + held(&self.counts) + held(&self.starts) + held(&self.used) + held(&self.chain)
+    }
+}
+
 impl<'a> Tracer<'a> {
-    pub fn new(model: &'a Model, corner_angle: f64) -> Self {
-        let room = Room { counts: vec![0; model.edges.len()], ..Room::default() };
-        Self { model, shapes: EdgeShapes::new(model), shortest: 0.0, corner_angle, loops: Loops::default(), room }
+    pub fn new(
+        model: &'a Model,
+        corner_angle: f64,
+        shapes: &'a mut EdgeShapes,
+        loops: &'a mut Loops,
+        room: &'a mut Room,
+    ) -> Self {
+        shapes.clear(model);
+        empty(&mut room.counts, model.edges.len());
+        room.counts.resize(model.edges.len(), 0);
+        Self { model, shapes, shortest: 0.0, corner_angle, loops, room }
     }
 
     /// Finds the loops around a group of faces: edges between two faces of the group and seams (used twice by one face)
     /// go, so do edges without length; what is left is chained again.
     pub fn trace(&mut self, group: &[FaceId]) {
-        let (model, shapes, shortest) = (self.model, &self.shapes, self.shortest);
-        let Room { uses, counts, starts, used, .. } = &mut self.room;
+        let (model, shapes, shortest) = (self.model, &*self.shapes, self.shortest);
+        let Room { uses, counts, starts, used, .. } = &mut *self.room;
         let loops = || group.iter().flat_map(|face| &model.faces[face.index()].loops);
         let edges = || loops().flat_map(|l| &l.uses).map(|u| u.edge);
         edges().for_each(|edge| counts[edge.index()] += 1);
@@ -132,7 +153,7 @@ impl<'a> Tracer<'a> {
     /// Chains uses head to tail; false where the first one is in a chain already. A chain that does not close (a broken
     /// file) is kept as it is.
     fn chain(&mut self, first: usize) -> bool {
-        let Room { uses, starts, used, chain, .. } = &mut self.room;
+        let Room { uses, starts, used, chain, .. } = &mut *self.room;
         chain.clear();
         let mut next = (!used[first]).then_some(first);
         while let Some(i) = next {
@@ -148,7 +169,7 @@ impl<'a> Tracer<'a> {
     /// Adds the loop that the chain makes.
     fn add_loop(&mut self) {
         let chain = || self.room.chain.iter().map(|&i| self.room.uses[i]);
-        let Loops { loops, corners, points } = &mut self.loops;
+        let Loops { loops, corners, points } = &mut *self.loops;
         let Some((last, _)) = chain().next_back() else { return };
         let (mut incoming, mut length, mut outer) = (self.shapes.leaving(&last), 0.0, false);
         for (edge_use, is_outer) in chain() {

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::brep::{Curve, Edge, EdgeId, EdgeUse, FaceId, Model};
 use crate::geometry::{Point, Vector};
+use crate::memory::{empty, held};
 
 /// Pieces a curved edge is cut into: enough to tell areas and centroids of loops apart.
 const PIECES: usize = 16;
@@ -22,7 +23,7 @@ struct EdgeShape {
 }
 
 /// The shapes of the edges of some faces.
-#[derive(Clone, Debug)]
+#[derive(Default)]
 pub(super) struct EdgeShapes {
     /// For each edge of the model its place among the shapes.
     places: Vec<u32>,
@@ -31,12 +32,19 @@ pub(super) struct EdgeShapes {
 }
 
 impl EdgeShapes {
-    /// No shapes yet.
-    pub fn new(model: &Model) -> Self {
+    /// No shapes of a model yet.
+    pub fn clear(&mut self, model: &Model) {
         let count = model.edges.len();
+        empty(&mut self.places, count);
+        self.places.resize(count, NOWHERE);
+        empty(&mut self.shapes, count);
         // Most edges are straight.
-        let points = Vec::with_capacity(2 * count);
-        Self { places: vec![NOWHERE; count], shapes: Vec::with_capacity(count), points }
+        empty(&mut self.points, 2 * count);
+    }
+
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        held(&self.places) + held(&self.shapes) + held(&self.points)
     }
 
     /// Evaluates the edges of `faces`.

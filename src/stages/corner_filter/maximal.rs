@@ -2,6 +2,7 @@
 
 use crate::brep::{EdgeId, Face, FaceGeometry, FaceId, Model, Placement, Surface};
 use crate::cancel::{Cancel, Cancelled};
+use crate::memory::{empty, held};
 
 /// Groups of faces that form one maximal face each, found in one body after the other.
 #[derive(Default)]
@@ -22,9 +23,16 @@ struct Users {
 }
 
 impl Groups {
-    /// No groups yet.
-    pub fn new(model: &Model) -> Self {
-        Self { users: vec![Users::default(); model.edges.len()], ..Self::default() }
+    /// No groups of a model yet.
+    pub fn clear(&mut self, model: &Model) {
+        empty(&mut self.users, model.edges.len());
+        self.users.resize(model.edges.len(), Users::default());
+    }
+
+    /// Bytes of memory that they hold.
+    pub fn bytes(&self) -> usize {
+        let joined = held(&self.joined.towards_root) + held(&self.joined.places);
+        held(&self.users) + joined + held(&self.faces) + held(&self.ends)
     }
 
     /// Finds the groups of these faces. Without a tolerance (mm) every face is its own group.

@@ -21,9 +21,11 @@ use smallvec::SmallVec;
 use crate::brep::{BodyId, FaceId, PlacedFaceId};
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Axis, Point, Transform, Vector};
+use crate::memory::{empty, held};
 use crate::stages::parse::Parsed;
 use crate::stages::{ModelError, Stage};
-use boundary::Tracer;
+use boundary::{Loops, Room, Tracer};
+use edges::EdgeShapes;
 use maximal::Groups;
 
 /// Settings of the stage.
@@ -99,15 +101,47 @@ pub struct Shape {
     scale: u64,
 }
 
+/// Memory that is filled anew for each model.
+#[derive(Default)]
+pub struct Scratch {
+    faces: Vec<FaceId>,
+    groups: Groups,
+    shapes: EdgeShapes,
+    loops: Loops,
+    room: Room,
+    found: LocalOutlines,
+}
+
+impl Scratch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        let Self { faces, groups, shapes, loops, room, found } = self;
+        held(faces) + groups.bytes() + shapes.bytes() + loops.bytes() + room.bytes() + found.bytes()
+    }
+}
+
 /// Finds the outlines of all placed faces.
 ///
 /// # Errors
 /// Only when cancelled.
 pub fn corner_filter(parsed: &Parsed, options: &Options, cancel: &Cancel) -> Result<Vec<Outline>, ModelError> {
+    corner_filter_in(&mut Scratch::default(), parsed, options, cancel)
+}
+
+/// [`corner_filter`] in memory that others have done with.
+///
+/// # Errors
+/// Only when cancelled.
+pub fn corner_filter_in(
+    scratch: &mut Scratch,
+    parsed: &Parsed,
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Vec<Outline>, ModelError> {
     let model = &parsed.model;
     let cancelled = |c| ModelError::cancelled(Stage::CornerFilter, c);
     let placed = AllPlaced::new(parsed);
-    let mut finder = Finder::new(parsed, options, cancel);
+    let mut finder = Finder::new(scratch, parsed, options, cancel);
     let mut of_body: Vec<Option<Range<usize>>> = vec![None; model.bodies.len()];
     let mut outlines = Vec::with_capacity(parsed.mesh.faces.len());
     let mut uses = vec![0u32; model.bodies.len()];
@@ -212,10 +246,17 @@ struct LocalOutline {
 }
 
 impl LocalOutlines {
-    /// None yet; most faces are outlines of their own, with four corners.
-    fn with_room_for(faces: usize) -> Self {
-        let (outlines, corners) = (Vec::with_capacity(faces), Vec::with_capacity(4 * faces));
-        Self { outlines, faces: Vec::with_capacity(faces), corners, inner: Vec::new() }
+    /// None yet; most of these faces will be outlines of their own, with four corners.
+    fn clear(&mut self, faces: usize) {
+        empty(&mut self.outlines, faces);
+        empty(&mut self.faces, faces);
+        empty(&mut self.corners, 4 * faces);
+        self.inner.clear();
+    }
+
+    /// Bytes of memory that they hold.
+    fn bytes(&self) -> usize {
+        held(&self.outlines) + held(&self.faces) + held(&self.corners) + held(&self.inner)
     }
 
     /// Where the faces, corners and inner loops of an outline are.
@@ -290,17 +331,19 @@ struct Finder<'a> {
     parsed: &'a Parsed,
     options: &'a Options,
     cancel: &'a Cancel,
-    faces: Vec<FaceId>,
-    groups: Groups,
+    faces: &'a mut Vec<FaceId>,
+    groups: &'a mut Groups,
     tracer: Tracer<'a>,
-    found: LocalOutlines,
+    found: &'a mut LocalOutlines,
 }
 
 impl<'a> Finder<'a> {
-    fn new(parsed: &'a Parsed, options: &'a Options, cancel: &'a Cancel) -> Self {
+    fn new(scratch: &'a mut Scratch, parsed: &'a Parsed, options: &'a Options, cancel: &'a Cancel) -> Self {
         let model = &parsed.model;
-        let tracer = Tracer::new(model, options.corner_angle_deg.to_radians());
-        let (faces, groups, found) = (Vec::new(), Groups::new(model), LocalOutlines::with_room_for(model.faces.len()));
+        let Scratch { faces, groups, shapes, loops, room, found } = scratch;
+        let tracer = Tracer::new(model, options.corner_angle_deg.to_radians(), shapes, loops, room);
+        groups.clear(model);
+        found.clear(model.faces.len());
         Self { parsed, options, cancel, faces, groups, tracer, found }
     }
 
@@ -311,18 +354,18 @@ impl<'a> Finder<'a> {
         let tolerance = options.same_surface * (parsed.measures.tolerance.size() / placement.scale());
         self.faces.clear();
         self.faces.extend(model.faces_of(body).filter(|&f| places.find(f).is_some()));
-        tracer.shapes.add(model, &self.faces);
+        tracer.shapes.add(model, self.faces);
         tracer.shortest = 1e-3 * tolerance;
-        self.groups.find(model, &self.faces, options.maximal_faces.then_some(tolerance), self.cancel)?;
+        self.groups.find(model, self.faces, options.maximal_faces.then_some(tolerance), self.cancel)?;
         let first = self.found.outlines.len();
         let oriented = model.bodies[body.index()].solid;
         for group in self.groups.iter() {
             self.cancel.check()?;
             tracer.trace(group);
-            let loops = &tracer.loops;
+            let loops = &*tracer.loops;
             let axis =
                 if options.axes { axial::axis(parsed, places, group, loops, placement, tolerance) } else { None };
-            boundary::add_outline(&mut self.found, model, group, loops, axis, oriented);
+            boundary::add_outline(self.found, model, group, loops, axis, oriented);
         }
         Ok(first..self.found.outlines.len())
     }

@@ -93,7 +93,7 @@ fn subset(members: &[u32], distance: impl Fn(u32) -> f64, count: usize) -> Vec<u
 /// Each pair of a face of the subset with a face of the bucket once, a face with itself included.
 fn within(members: &[u32], subset: &[u32]) -> Vec<(u32, u32)> {
     let chosen = |i: u32| subset.binary_search(&i).is_ok();
-    let mut meetings = Vec::new();
+    let mut meetings = Vec::with_capacity(members.len() * (subset.len() + 1));
     for &b in members {
         if !chosen(b) {
             meetings.push((b, b));

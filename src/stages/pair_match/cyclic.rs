@@ -140,22 +140,23 @@ fn difference(p: &[f64], q: &[f64], limit: f64, absolute: bool) -> f64 {
 fn subsequence(short: &[Point], long: &[Point], offset: usize, order: Order, total: f64) -> Option<Vec<usize>> {
     let (n, spare) = (short.len(), long.len() - short.len());
     let at = |k: usize| &long[position(k, offset, order, long.len())];
-    // sums[k][s]: corner k of the short loop lies on step k + s of the long one; with the step before it.
-    let mut sums = vec![vec![(f64::INFINITY, 0); spare + 1]; n];
-    sums[0][0] = (0.0, 0);
+    // Corner k of the short loop lies on step k + s of the long one; with the step before it.
+    let mut sums = vec![(f64::INFINITY, 0); n * (spare + 1)];
+    let place = |k: usize, s: usize| k * (spare + 1) + s;
+    sums[0] = (0.0, 0);
     for k in 1..n {
         let side = (short[k] - short[k - 1]).norm();
         for s in 0..=spare {
             for before in 0..=s {
-                let cost = (side - (at(k + s) - at(k - 1 + before)).norm()).abs() + sums[k - 1][before].0;
-                if cost < sums[k][s].0 {
-                    sums[k][s] = (cost, before);
+                let cost = (side - (at(k + s) - at(k - 1 + before)).norm()).abs() + sums[place(k - 1, before)].0;
+                if cost < sums[place(k, s)].0 {
+                    sums[place(k, s)] = (cost, before);
                 }
             }
         }
     }
     let closing = (short[0] - short[n - 1]).norm();
-    let closed = |s: usize| sums[n - 1][s].0 + (closing - (at(0) - at(n - 1 + s)).norm()).abs();
+    let closed = |s: usize| sums[place(n - 1, s)].0 + (closing - (at(0) - at(n - 1 + s)).norm()).abs();
     let mut s = (0..=spare).min_by(|&s, &t| closed(s).total_cmp(&closed(t)))?;
     if closed(s) > total {
         return None;
@@ -163,7 +164,7 @@ fn subsequence(short: &[Point], long: &[Point], offset: usize, order: Order, tot
     let mut chain = vec![0; n];
     for k in (0..n).rev() {
         chain[k] = position(k + s, offset, order, long.len());
-        s = sums[k][s].1;
+        s = sums[place(k, s)].1;
     }
     Some(chain)
 }

@@ -70,17 +70,45 @@ pub struct Parsed {
     pub warnings: Vec<String>,
 }
 
+/// Memory that is filled anew for each model.
+#[derive(Default)]
+pub struct Scratch {
+    step: step::Scratch,
+    tessellation: tessellate::Scratch,
+}
+
+impl Scratch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        self.step.bytes() + self.tessellation.bytes()
+    }
+}
+
 /// Reads a file, moves it by `pose` where there is one, tessellates and measures it.
 ///
 /// # Errors
 /// As [`read`]; and where no face can be tessellated or the model is too large or small for mm in `f64`.
 pub fn parse(bytes: &[u8], options: &Options, pose: Option<&Isometry>, cancel: &Cancel) -> Result<Parsed, ModelError> {
-    let Reading { model, mut skipped, mut warnings } = read(bytes, options, cancel)?;
+    parse_in(&mut Scratch::default(), bytes, options, pose, cancel)
+}
+
+/// [`parse`] in memory that others have done with.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_in(
+    scratch: &mut Scratch,
+    bytes: &[u8],
+    options: &Options,
+    pose: Option<&Isometry>,
+    cancel: &Cancel,
+) -> Result<Parsed, ModelError> {
+    let Reading { model, mut skipped, mut warnings } = read_in(&mut scratch.step, bytes, options, cancel)?;
     let model = match pose {
         Some(pose) => model.moved(pose),
         None => model,
     };
-    let meshed = tessellate::tessellate(&model, &options.tessellation, cancel);
+    let meshed = tessellate::tessellate_in(&mut scratch.tessellation, &model, &options.tessellation, cancel);
     let (mesh, more_skipped, more_warnings) = meshed.map_err(|c| ModelError::cancelled(Stage::Parse, c))?;
     skipped.extend(more_skipped);
     warnings.extend(more_warnings);
@@ -114,11 +142,20 @@ pub fn relocated(bytes: &[u8], by: &Isometry, options: &Options, cancel: &Cancel
 /// # Errors
 /// Where the bytes are of no format that is read, hold no face that can be read, or pass a limit; and when cancelled.
 pub fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<Reading, ModelError> {
+    read_in(&mut step::Scratch::default(), bytes, options, cancel)
+}
+
+fn read_in(
+    scratch: &mut step::Scratch,
+    bytes: &[u8],
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Reading, ModelError> {
     if occt::is_brep(bytes) {
         return occt::read(bytes, options, cancel);
     }
     if iges::is_iges(bytes) {
         return iges::read(bytes, options, cancel);
     }
-    step::read(bytes, options, cancel)
+    step::read(scratch, bytes, options, cancel)
 }

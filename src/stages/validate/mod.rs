@@ -21,6 +21,8 @@ pub mod support;
 mod tally;
 mod whole_faces;
 
+use smallvec::SmallVec;
+
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Plane, PlaneIndex};
 use crate::stages::corner_filter::Outline;
@@ -212,7 +214,7 @@ struct Group {
     /// planes of its own: without a pair, only nearly the whole surface shows that the model shares them.
     paired: bool,
     /// The first few pairs, largest votes first.
-    pairs: Vec<u32>,
+    pairs: SmallVec<[u32; 4]>,
 }
 
 /// Joins candidates into distinct planes by leaders, the most reliable source and the largest vote first, and keeps

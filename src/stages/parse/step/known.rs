@@ -2,6 +2,7 @@
 
 use super::records::File;
 use crate::brep::{EdgeId, VertexId};
+use crate::memory::{empty, kept};
 
 /// Something of the model that stands for an instance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,9 +20,16 @@ const MOST: u32 = u32::MAX / 4;
 pub(super) struct Known(Vec<u32>);
 
 impl Known {
-    /// Nothing was made yet.
-    pub fn new(file: &File) -> Self {
-        Self(vec![0; file.table.entries.len()])
+    /// Nothing was made yet; noted in memory that others have done with.
+    pub fn new(mut memory: Vec<u32>, file: &File) -> Self {
+        empty(&mut memory, file.table.entries.len());
+        memory.resize(file.table.entries.len(), 0);
+        Self(memory)
+    }
+
+    /// The memory, for others.
+    pub fn done(self) -> Vec<u32> {
+        kept(self.0)
     }
 
     /// Forgets everything.

@@ -8,6 +8,7 @@ use super::effort::Effort;
 use super::eight::{find, leading_number};
 use super::keyword::Kind;
 use crate::cancel::{Cancel, Cancelled};
+use crate::memory::empty;
 
 /// How many statements pass between two looks at the cancel flag.
 const CHECK_EVERY: usize = 1 << 14;
@@ -57,9 +58,15 @@ pub(super) struct Table {
 
 /// Finds all instances of all DATA sections, and what lies outside of any section too.
 pub(super) fn scan(bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
+    scan_in(Vec::new(), bytes, cancel)
+}
+
+/// [`scan`] in memory that others have done with.
+pub(super) fn scan_in(mut entries: Vec<Entry>, bytes: &[u8], cancel: &Cancel) -> Result<Table, Cancelled> {
     let bytes = &bytes[..bytes.len().min(LONGEST_FILE)];
     let effort = Effort::new(bytes.len(), cancel);
-    let mut table = Table { entries: Vec::with_capacity(bytes.len() / 40), effort, ..Table::default() };
+    empty(&mut entries, bytes.len() / 40);
+    let mut table = Table { entries, effort, ..Table::default() };
     let mut broken_strings = 0_usize;
     let (mut at, mut count, mut ended) = (0, 0, false);
     loop {

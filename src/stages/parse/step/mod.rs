@@ -40,6 +40,8 @@ use rustc_hash::FxHashMap;
 
 use self::assembly::{Assembly, assemble};
 use self::bodies::BodyKind;
+use self::known::Known;
+use self::lexer::Entry;
 use self::placement::Geometry;
 use self::records::File;
 use self::representation::Placed;
@@ -47,15 +49,36 @@ use self::topology::Builder;
 use super::{Options, Reading};
 use crate::brep::{BodyId, Curve, FreeCurve, Occurrence, Skipped};
 use crate::cancel::{Cancel, Cancelled};
+use crate::memory::{held, kept};
 use crate::stages::{ModelError, Stage};
 pub(super) use relocate::relocated;
+
+/// Memory that is filled anew for each file. What is read takes it out and puts it back; where reading fails, or
+/// the file is large, it is gone.
+#[derive(Default)]
+pub(super) struct Scratch {
+    entries: Vec<Entry>,
+    known: Vec<u32>,
+}
+
+impl Scratch {
+    /// Bytes of memory that it holds.
+    pub fn bytes(&self) -> usize {
+        held(&self.entries) + held(&self.known)
+    }
+}
 
 /// Reads the B-rep of a STEP file, in mm.
 ///
 /// Errors: where the bytes are no STEP file, hold no face that can be read, or pass a limit; and when cancelled.
-pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<Reading, ModelError> {
+pub(super) fn read(
+    scratch: &mut Scratch,
+    bytes: &[u8],
+    options: &Options,
+    cancel: &Cancel,
+) -> Result<Reading, ModelError> {
     let stopped = |c: Cancelled| ModelError::cancelled(Stage::Parse, c);
-    let mut table = lexer::scan(bytes, cancel).map_err(stopped)?;
+    let mut table = lexer::scan_in(std::mem::take(&mut scratch.entries), bytes, cancel).map_err(stopped)?;
     let warnings = std::mem::take(&mut table.warnings);
     if table.entries.is_empty() {
         let why = if table.marked { "no entities" } else { "not a STEP, IGES or .brep file" };
@@ -64,13 +87,15 @@ pub(super) fn read(bytes: &[u8], options: &Options, cancel: &Cancel) -> Result<R
     let file = File { bytes, table: &table };
     let assembly = assemble(file, options.most_occurrences, cancel).map_err(stopped)?;
     let units = assembly.placed.first().map(|p| p.units).unwrap_or_default();
-    let mut builder = Builder::new(Geometry::new(file, units));
+    let known = Known::new(std::mem::take(&mut scratch.known), &file);
+    let mut builder = Builder::new(Geometry::new(file, units), known);
     builder.model.schema = header::schema(&file);
     builder.model.unit_mm = units.length;
     warnings.into_iter().for_each(|w| builder.notes.warn(w));
     build(&mut builder, &assembly, options, cancel)?;
     cancel.check().map_err(stopped)?;
-    let Builder { model, mut notes, .. } = builder;
+    let Builder { model, mut notes, known, .. } = builder;
+    *scratch = Scratch { known: known.done(), entries: kept(table.entries) };
     assembly.faults.iter().for_each(|(id, fault)| notes.skip(*id, fault.clone()));
     let (skipped, warnings) = notes.finish();
     if model.occurrences.is_empty() {

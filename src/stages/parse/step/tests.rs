@@ -6,6 +6,10 @@ use super::*;
 use crate::geometry::Point;
 use crate::stages::parse::{Parsed, parse};
 
+fn reading(bytes: &[u8]) -> Result<Reading, ModelError> {
+    read(&mut Scratch::default(), bytes, &Options::default(), &Cancel::new())
+}
+
 /// A tetrahedron as a faceted B-rep, with corners at the origin and one unit along each axis, in units of metres.
 const TETRAHEDRON: &str = "
 #1=CARTESIAN_POINT('',(0.,0.,0.));#2=CARTESIAN_POINT('',(1.,0.,0.));
@@ -40,7 +44,7 @@ const ASSEMBLY: &str = "
 
 fn read_text(data: &str) -> Result<Reading, ModelError> {
     let text = format!("ISO-10303-21;DATA;{data}ENDSEC;END-ISO-10303-21;");
-    read(text.as_bytes(), &Options::default(), &Cancel::new())
+    reading(text.as_bytes())
 }
 
 #[test]
@@ -209,7 +213,7 @@ fn a_broken_face_is_skipped_with_its_number() {
 
 #[test]
 fn files_without_faces_say_why() {
-    let why = |bytes: &[u8]| read(bytes, &Options::default(), &Cancel::new()).unwrap_err().why;
+    let why = |bytes: &[u8]| reading(bytes).unwrap_err().why;
     assert_eq!(why(b"solid ascii stl"), "not a STEP, IGES or .brep file");
     assert_eq!(why(b""), "not a STEP, IGES or .brep file");
     assert_eq!(why(b"ISO-10303-21;DATA;ENDSEC;END-ISO-10303-21;"), "no entities");
@@ -224,7 +228,7 @@ proptest! {
         let length = bytes.len();
         changes.into_iter().for_each(|(at, value)| bytes[at % length] = value);
         bytes.truncate(length - cut % length / 4);
-        if let Ok(Reading { model, .. }) = read(&bytes, &Options::default(), &Cancel::new()) {
+        if let Ok(Reading { model, .. }) = reading(&bytes) {
             prop_assert!(!model.occurrences.is_empty());
         }
     }
@@ -235,7 +239,7 @@ proptest! {
         for (from, to) in swaps {
             text = text.replace(&format!("#{from},"), &format!("#{to},")).replace(&format!("#{from})"), &format!("#{to})"));
         }
-        if let Ok(Reading { model, .. }) = read(text.as_bytes(), &Options::default(), &Cancel::new()) {
+        if let Ok(Reading { model, .. }) = reading(text.as_bytes()) {
             prop_assert!(!model.occurrences.is_empty());
         }
     }

@@ -32,7 +32,7 @@ pub(super) struct Builder<'a> {
     pub geometry: Geometry<'a>,
     pub model: Model,
     pub notes: Notes,
-    known: Known,
+    pub(super) known: Known,
     /// Straight edges of poly loops, by the entities of their ends, the smaller first.
     straight_edges: FxHashMap<[u64; 2], EdgeId>,
     surfaces: FxHashMap<u64, Arc<Surface>>,
@@ -48,9 +48,9 @@ pub(super) struct LooseFace {
 }
 
 impl<'a> Builder<'a> {
-    pub fn new(geometry: Geometry<'a>) -> Self {
+    pub fn new(geometry: Geometry<'a>, known: Known) -> Self {
         Self {
-            known: Known::new(&geometry.file),
+            known,
             geometry,
             model: Model::empty(),
             notes: Notes::default(),
