@@ -21,6 +21,36 @@ pub fn solid(polygons: &[Vec<Point>], placement: &Transform) -> Parsed {
     builder.finish()
 }
 
+/// Puts the body of a solid made where it is, unmoved, at one more place.
+pub fn add_copy(parsed: &mut Parsed, placement: &Transform) {
+    let occurrence = parsed.model.occurrences.len() as u32;
+    let path = format!("{}", occurrence + 1);
+    parsed.model.occurrences.push(Occurrence { path, body: BodyId(0), placement: *placement });
+    let Mesh { points, triangles, faces } = &mut parsed.mesh;
+    let (first_point, first_triangle) = (points.len() as u32, triangles.len() as u32);
+    let of_one: Vec<_> = faces.iter().filter(|f| f.occurrence == 0).cloned().collect();
+    let Some(last) = of_one.last() else { return };
+    let (points_end, triangles_end) = (last.points.end as usize, last.triangles.end as usize);
+    let copies: Vec<_> = points[..points_end].iter().map(|p| placement.point(p)).collect();
+    points.extend(copies);
+    triangles.extend_from_within(..triangles_end);
+    for triangle in &mut triangles[first_triangle as usize..] {
+        *triangle = triangle.map(|i| i + first_point);
+        if placement.mirrors() {
+            triangle.swap(1, 2);
+        }
+    }
+    faces.extend(of_one.into_iter().map(|f| MeshFace {
+        occurrence,
+        points: f.points.start + first_point..f.points.end + first_point,
+        triangles: f.triangles.start + first_triangle..f.triangles.end + first_triangle,
+        area: f.area * placement.scale().powi(2),
+        centroid: placement.point(&f.centroid),
+        flux: f.flux * placement.scale().powi(3),
+        ..f
+    }));
+}
+
 /// The faces of a prism over a polygon in the plane z = 0 (counter-clockwise) of height `h`.
 pub fn prism(base: &[[f64; 2]], h: f64) -> Vec<Vec<Point>> {
     let at = |z: f64| base.iter().map(move |&[x, y]| Point::new(x, y, z));

@@ -298,35 +298,15 @@ impl Matcher<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::brep::{BodyId, MeshFace, Occurrence};
     use crate::geometry::{Transform, Vector};
     use crate::stages::corner_filter::{self, corner_filter};
-    use crate::stages::fixture::{prism, solid};
+    use crate::stages::fixture::{add_copy, prism, solid};
 
     /// A wedge, and the same body once more, pushed aside along other axes.
     fn two_wedges([x, y]: [Vector; 2]) -> Parsed {
         let mut parsed = solid(&prism(&[[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]], 2.0), &Transform::identity());
-        let placement = Transform::from_axes(&Point::new(9.0, 1.0, 0.0), &x, &y, &(Vector::z() * x.norm()));
-        parsed.model.occurrences.push(Occurrence { path: "2".into(), body: BodyId(0), placement });
-        let (points, triangles) = (parsed.mesh.points.len() as u32, parsed.mesh.triangles.len() as u32);
-        let copies: Vec<_> = parsed.mesh.points.iter().map(|p| placement.point(p)).collect();
-        parsed.mesh.points.extend(copies);
-        parsed.mesh.triangles.extend_from_within(..);
-        for triangle in &mut parsed.mesh.triangles[triangles as usize..] {
-            *triangle = triangle.map(|i| i + points);
-            if placement.mirrors() {
-                triangle.swap(0, 1);
-            }
-        }
-        let moved = |f: &MeshFace| MeshFace {
-            occurrence: 1,
-            points: f.points.start + points..f.points.end + points,
-            triangles: f.triangles.start + triangles..f.triangles.end + triangles,
-            centroid: placement.point(&f.centroid),
-            ..f.clone()
-        };
-        let faces: Vec<_> = parsed.mesh.faces.iter().map(moved).collect();
-        parsed.mesh.faces.extend(faces);
+        let z = Vector::z() * x.norm();
+        add_copy(&mut parsed, &Transform::from_axes(&Point::new(9.0, 1.0, 0.0), &x, &y, &z));
         parsed
     }
 

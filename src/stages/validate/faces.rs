@@ -1,11 +1,12 @@
 //! Whether a mirror maps one face onto another.
 
-use std::rc::Rc;
+use smallvec::SmallVec;
 
 use super::Options;
+use super::drawn::{Drawn, Placed};
 use super::shape::{histogram_correlation, wasserstein};
 use super::support::SurfaceField;
-use crate::brep::sample::sample_face;
+use crate::brep::PlacedFaceId;
 use crate::geometry::bvh::{Recent, nearest_on_triangle};
 use crate::geometry::{Plane, Point, Vector};
 use crate::stages::corner_filter::Outline;
@@ -14,17 +15,14 @@ use crate::stages::parse::Parsed;
 /// Fewest samples on a face.
 const FEWEST: usize = 32;
 
-/// Points and normals on a face.
-type Samples = Rc<[(Point, Vector)]>;
-
-/// Samples of the faces of a model, drawn when first asked for.
+/// Samples of the outlines of a model, drawn when first asked for.
 pub struct FaceSamples<'a> {
     parsed: &'a Parsed,
     outlines: &'a [Outline],
     options: &'a Options,
     size: f64,
     fewest: usize,
-    drawn: Vec<Option<Samples>>,
+    drawn: Drawn<'a>,
 }
 
 impl<'a> FaceSamples<'a> {
@@ -35,30 +33,35 @@ impl<'a> FaceSamples<'a> {
 
     /// As `new`, with at least `fewest` samples on a face.
     pub fn with_fewest(parsed: &'a Parsed, outlines: &'a [Outline], options: &'a Options, fewest: usize) -> Self {
-        let size = parsed.measures.tolerance.size();
-        Self { parsed, outlines, options, size, fewest, drawn: vec![None; outlines.len()] }
+        let (size, drawn) = (parsed.measures.tolerance.size(), Drawn::new(&parsed.model, &parsed.mesh));
+        Self { parsed, outlines, options, size, fewest, drawn }
     }
 
-    /// The samples of an outline, a fixed distance apart.
-    fn of(&mut self, outline: u32) -> Samples {
-        let (outlines, options, size, parsed) = (self.outlines, self.options, self.size, self.parsed);
+    /// The samples of an outline, a fixed distance apart, by its faces.
+    fn of(&mut self, outline: u32) -> SmallVec<[Placed; 1]> {
+        let outline = &self.outlines[outline as usize];
         let fewest = self.fewest as f64;
-        let draw = || {
-            let outline = &outlines[outline as usize];
-            let wanted = outline.area / (options.face_step * size).powi(2);
-            let count = wanted.clamp(fewest, fewest.max(options.face_samples as f64));
-            let of_face = |&f: &crate::brep::PlacedFaceId| {
-                let share = parsed.mesh.faces[f.index()].area / outline.area;
-                sample_face(&parsed.mesh, f, (count * share).ceil().max(1.0) as usize)
-            };
-            outline.faces.iter().flat_map(of_face).map(|s| (s.point, s.normal)).collect()
+        let wanted = outline.area / (self.options.face_step * self.size).powi(2);
+        let count = wanted.clamp(fewest, fewest.max(self.options.face_samples as f64));
+        let of_face = |&f: &PlacedFaceId| {
+            let share = self.parsed.mesh.faces[f.index()].area / outline.area;
+            self.drawn.of(f, (count * share).ceil().max(1.0) as usize)
         };
-        self.drawn[outline as usize].get_or_insert_with(draw).clone()
+        outline.faces.iter().map(of_face).collect()
+    }
+
+    /// Signed distances of the samples from the plane.
+    fn signed_distances(&mut self, outline: u32, plane: &Plane) -> Vec<f64> {
+        let samples = self.of(outline);
+        let points = samples.iter().flat_map(|placed| self.drawn.iter(placed));
+        points.map(|(p, _)| plane.signed_distance(&p)).collect()
     }
 
     /// Unsigned distances of the samples from the plane.
     fn distances(&mut self, outline: u32, plane: &Plane) -> Vec<f64> {
-        self.of(outline).iter().map(|(p, _)| plane.signed_distance(p).abs()).collect()
+        let mut distances = self.signed_distances(outline, plane);
+        distances.iter_mut().for_each(|d| *d = d.abs());
+        distances
     }
 
     /// The distances of two faces; for one face, those of its two sides.
@@ -66,9 +69,8 @@ impl<'a> FaceSamples<'a> {
         if a != b {
             return (self.distances(a, plane), self.distances(b, plane));
         }
-        let samples = self.of(a);
-        let signed = samples.iter().map(|(p, _)| plane.signed_distance(p));
-        let (left, right): (Vec<f64>, Vec<f64>) = signed.partition(|d| *d < 0.0);
+        let signed = self.signed_distances(a, plane);
+        let (left, right): (Vec<f64>, Vec<f64>) = signed.into_iter().partition(|d| *d < 0.0);
         (left.into_iter().map(f64::abs).collect(), right)
     }
 
@@ -81,13 +83,20 @@ impl<'a> FaceSamples<'a> {
     /// The correlation of eq. (6) as above; and whether the mirror maps face `a` onto face `b` (or `a` onto itself):
     /// areas, inner loops, distances to the plane, surfaces both ways.
     pub fn compared(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> (Option<f64>, bool) {
-        let (mut s, mut t) = self.both_distances(a, b, plane);
+        let is_image = self.is_image(a, b, plane, field);
+        let (mut s, mut t) = if is_image && a != b {
+            // The samples of the one face are the images of those of the other.
+            let distances = self.distances(a, plane);
+            (distances.clone(), distances)
+        } else {
+            self.both_distances(a, b, plane)
+        };
         let correlation = histogram_correlation(&s, &t, self.options.bins);
         let (p, q) = (&self.outlines[a as usize], &self.outlines[b as usize]);
         let mirrored = (p.area - q.area).abs() <= self.options.area * p.area.max(q.area)
             && self.inner_loops_match(p, q, plane)
-            && (a == b || wasserstein(&mut s, &mut t) <= self.options.wasserstein * self.size)
-            && self.lies_on(a, b, plane, field)
+            && (is_image || a == b || wasserstein(&mut s, &mut t) <= self.options.wasserstein * self.size)
+            && (is_image || self.samples_lie_on(a, b, plane, field))
             && (a == b || self.lies_on(b, a, plane, field));
         (correlation, mirrored)
     }
@@ -113,22 +122,31 @@ impl<'a> FaceSamples<'a> {
         p.inner.len() == q.inner.len() && (p.inner.len() > INNER || p.inner.iter().all(image))
     }
 
-    /// Whether the mirrored samples of one face lie on the other.
+    /// Whether the mirror maps one face onto the other, as a whole or by its samples.
     fn lies_on(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> bool {
-        let [from, faces] = [a, b].map(|i| &self.outlines[i as usize].faces);
-        if let ([one], [other]) = (&from[..], &faces[..])
-            && field.maps_onto(&plane.reflection(), *one, *other)
-        {
-            return true;
+        self.is_image(a, b, plane, field) || self.samples_lie_on(a, b, plane, field)
+    }
+
+    /// Whether face `b` is as a whole the image of face `a`: to tell, none of their samples is asked.
+    fn is_image(&self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> bool {
+        match [a, b].map(|i| &self.outlines[i as usize].faces[..]) {
+            [&[one], &[other]] => field.maps_onto(&plane.reflection(), one, other),
+            _ => false,
         }
+    }
+
+    /// Whether the mirrored samples of one face lie on the other.
+    fn samples_lie_on(&mut self, a: u32, b: u32, plane: &Plane, field: &SurfaceField) -> bool {
         let far = self.options.distance_max * self.size;
         let near = far.min(self.options.distance_95 * self.size);
         let samples = self.of(a);
         let target = &self.outlines[b as usize];
+        let faces = &target.faces;
         let small = target.area <= SMALL * near * near && self.triangles_of(target).count() <= FEW_TRIANGLES;
+        let count: usize = samples.iter().map(Placed::len).sum();
         let (mut outside, mut recent) = (0, Recent::default());
-        for (p, n) in samples.iter() {
-            let (image, normal) = (plane.reflect(p), plane.reflect_vector(n));
+        for (p, n) in samples.iter().flat_map(|placed| self.drawn.iter(placed)) {
+            let (image, normal) = (plane.reflect(&p), plane.reflect_vector(&n));
             let mut within = |radius| {
                 if small {
                     return self.is_on(target, (&image, &normal), radius, field);
@@ -139,7 +157,7 @@ impl<'a> FaceSamples<'a> {
                 continue;
             }
             outside += 1;
-            if outside * 20 > samples.len() || !within(far) {
+            if outside * 20 > count || !within(far) {
                 return false;
             }
         }
@@ -166,3 +184,33 @@ const SMALL: f64 = 4.0;
 const FEW_TRIANGLES: usize = 64;
 /// Faces with more inner loops (a plate with hundreds of holes) are judged by their surfaces alone.
 const INNER: usize = 256;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cancel::Cancel;
+    use crate::geometry::Transform;
+    use crate::stages::corner_filter::corner_filter;
+    use crate::stages::fixture::{prism, solid};
+
+    #[test]
+    fn a_face_and_its_image_share_their_samples() {
+        // A trapezoid mirrored by x = 2; its second and fourth wall are images of each other.
+        let base = [[0.0, 0.0], [4.0, 0.0], [3.0, 2.0], [1.0, 2.0]];
+        let parsed = solid(&prism(&base, 3.0), &Transform::identity());
+        let outlines = corner_filter(&parsed, &Default::default(), &Cancel::new()).unwrap();
+        let options = Options::default();
+        let field = SurfaceField::new(&parsed, 2000, 0.004, 0.866, &Cancel::new()).unwrap();
+        let plane = Plane { normal: Vector::x(), offset: 2.0 };
+        let mut samples = FaceSamples::new(&parsed, &outlines, &options);
+        let (correlation, mirrored) = samples.compared(3, 5, &plane, &field);
+        assert!(mirrored && (correlation.unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(samples.drawn.counts().0, 1);
+        assert_eq!(samples.compared(5, 3, &plane, &field), (correlation, true));
+        // Beside the plane they are no images, and each has samples of its own.
+        let aside = Plane { offset: 2.5, ..plane };
+        let mut samples = FaceSamples::new(&parsed, &outlines, &options);
+        assert!(!samples.compared(3, 5, &aside, &field).1);
+        assert_eq!(samples.drawn.counts().0, 2);
+    }
+}

@@ -7,12 +7,13 @@
 //! distances by the one-dimensional Wasserstein distance, then the mirrored samples of each face with the surface of
 //! the other, then the inner loops (`faces`). Before that, candidates are joined into distinct planes, and planes
 //! whose coarse surface support (`support`) is far below the best are dropped. Faces that a plane maps onto whole faces
-//! (`whole_faces`, `quads`) need no look at their samples.
+//! (`whole_faces`, `quads`) need no look at their samples, which are drawn once for all places of a face (`drawn`).
 //!
 //! Cost: a look-up for each face and, for the samples of the others, a bit of the picture of a large plane face
 //! (`footprint`) or a query of the triangle tree: a few hundred for each plane that is kept, some tens for each that is
 //! dropped.
 
+mod drawn;
 pub mod faces;
 mod footprint;
 mod quads;
