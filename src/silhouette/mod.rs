@@ -1,7 +1,8 @@
-//! Silhouettes: pictures of 1 bit to the pixel, their rows held in words.
+//! Silhouettes: pictures of 1 bit to the pixel, their rows held in words; and the areas of shadows.
 
 pub mod draw;
 pub mod outline;
+pub mod shadow;
 
 use std::ops::Range;
 

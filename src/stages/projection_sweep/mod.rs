@@ -17,7 +17,6 @@ mod curve;
 mod cutter;
 mod pixels;
 mod reference;
-mod shadow;
 mod slabs;
 mod slices;
 mod widths;

@@ -6,10 +6,11 @@ use crate::brep::Mesh;
 use crate::brep::measure::Measures;
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Matrix, Point, Vector, any_perpendicular};
+use crate::silhouette::shadow;
 use crate::stages::merge::{Label, Symmetries};
 use crate::stages::parse::Parsed;
 
-use super::{AreaBy, Options, SecondAxis, Source, shadow, towards, turn};
+use super::{AreaBy, Options, SecondAxis, Source, towards, turn};
 
 /// The first canonical axis.
 pub(super) struct Reference {

@@ -1,4 +1,4 @@
-//! The area of one shadow, by the same slices as [`super::Slices`] but without what is connected in them.
+//! The area of one shadow, by slices: in each the length that lies within the outlines.
 
 use std::ops::Range;
 
@@ -7,7 +7,8 @@ use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::cells::{self, first_centre};
 use crate::geometry::order::{less, more};
 use crate::geometry::{Point, Vector};
-use crate::silhouette::outline::{Outline, outlines};
+
+use super::outline::{Outline, outlines};
 
 /// Area of a mesh's shadow on the plane of `along` and `across` (at right angles, unit vectors), mm^2: the mesh is cut
 /// into `count` slices across `across`. `centre` is near the mesh.
