@@ -11,7 +11,7 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use symalign::brep::{FaceGeometry, Mesh, MeshFace, Model};
+use symalign::brep::{Mesh, MeshFace, Model};
 use symalign::cancel::Cancel;
 use symalign::geometry::Aabb;
 use symalign::stages::parse;
@@ -82,10 +82,8 @@ fn missing(path: &str, entity: &str, why: &str) -> Row {
 
 fn face_row(path: &str, model: &Model, mesh: &Mesh, face: &MeshFace) -> Row {
     let read = &model.faces[face.face.index()];
-    let kind = match &read.geometry {
-        FaceGeometry::Trimmed { surface, .. } => format!("{:?}", surface.kind()),
-        FaceGeometry::Faceted(_) => "Faceted".to_owned(),
-    };
+    let kind =
+        model.surface_of(read).map_or_else(|| "Faceted".to_owned(), |(surface, _)| format!("{:?}", surface.kind()));
     let kind = kind.split(' ').next().unwrap_or_default().to_lowercase();
     let triangles = face.triangles.start as usize..face.triangles.end as usize;
     let meshed: f64 = triangles.map(|t| 0.5 * mesh.doubled_normal(t).norm()).sum();

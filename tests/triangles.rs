@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 use symalign::brep::tessellate::{Options, tessellate};
-use symalign::brep::{FaceGeometry, Mesh, MeshFace, Model};
+use symalign::brep::{Mesh, MeshFace, Model};
 use symalign::cancel::Cancel;
 use symalign::geometry::Aabb;
 use symalign::stages::parse;
@@ -40,10 +40,8 @@ fn triangle_flux(mesh: &Mesh, face: &MeshFace) -> f64 {
 }
 
 fn kind(model: &Model, face: &MeshFace) -> String {
-    match &model.faces[face.face.index()].geometry {
-        FaceGeometry::Trimmed { surface, .. } => format!("{:?}", surface.kind()),
-        FaceGeometry::Faceted(_) => "Faceted".to_owned(),
-    }
+    let surface = model.surface_of(&model.faces[face.face.index()]);
+    surface.map_or_else(|| "Faceted".to_owned(), |(surface, _)| format!("{:?}", surface.kind()))
 }
 
 /// What is wrong with the triangles of a file: first bad faces, then bad solids.

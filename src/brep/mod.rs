@@ -45,6 +45,8 @@ id!(/// Index into [`Model::vertices`].
     VertexId);
 id!(/// Index into [`Model::edges`].
     EdgeId);
+id!(/// Index into [`Model::surfaces`].
+    SurfaceId);
 id!(/// Index into [`Model::faces`].
     FaceId);
 id!(/// Index into [`Model::bodies`].
@@ -142,7 +144,7 @@ pub enum FaceGeometry {
     /// A surface trimmed by loops; `same_sense`: the face normal is the surface normal S_u x S_v, else opposite to it.
     Trimmed {
         /// What is trimmed.
-        surface: Arc<Surface>,
+        surface: SurfaceId,
         /// Whether the face has the surface's normal.
         same_sense: bool,
     },
@@ -237,6 +239,8 @@ pub struct Model {
     pub vertices: Vec<Vertex>,
     /// All edges, see [`EdgeId`].
     pub edges: Vec<Edge>,
+    /// What faces are trimmed of, see [`SurfaceId`]: several may share one, and some may have none.
+    pub surfaces: Vec<Surface>,
     /// All faces, see [`FaceId`].
     pub faces: Vec<Face>,
     /// All shells, body by body.
@@ -257,6 +261,7 @@ impl Model {
             unit_mm: 1.0,
             vertices: Vec::new(),
             edges: Vec::new(),
+            surfaces: Vec::new(),
             faces: Vec::new(),
             shells: Vec::new(),
             bodies: Vec::new(),
@@ -272,6 +277,20 @@ impl Model {
             *placement = by.as_transform().after(placement);
         }
         self
+    }
+
+    /// Adds a surface.
+    pub fn add_surface(&mut self, surface: Surface) -> SurfaceId {
+        self.surfaces.push(surface);
+        SurfaceId(self.surfaces.len() as u32 - 1)
+    }
+
+    /// The surface that a face is trimmed of, and whether the face has its normal; `None` for triangles.
+    pub fn surface_of(&self, face: &Face) -> Option<(&Surface, bool)> {
+        match face.geometry {
+            FaceGeometry::Trimmed { surface, same_sense } => Some((&self.surfaces[surface.index()], same_sense)),
+            FaceGeometry::Faceted(_) => None,
+        }
     }
 
     /// The faces of a body, shell by shell.

@@ -1,7 +1,5 @@
 //! Models made by hand for the tests of the stages: solids of flat faces.
 
-use std::sync::Arc;
-
 use rustc_hash::FxHashMap;
 use smallvec::smallvec;
 
@@ -111,7 +109,7 @@ impl Builder {
         let normal = doubled_area(polygon).normalize();
         let x = crate::geometry::any_perpendicular(&normal);
         let plane = Surface::Plane(Placement { origin: polygon[0], x, y: normal.cross(&x), z: normal });
-        let geometry = FaceGeometry::Trimmed { surface: Arc::new(plane), same_sense: true };
+        let geometry = FaceGeometry::Trimmed { surface: self.model.add_surface(plane), same_sense: true };
         self.model.faces.push(Face { entity, geometry, loops: smallvec![face_loop], shell: 0 });
         self.mesh_face(FaceId(index), polygon);
     }

@@ -141,9 +141,9 @@ fn mark_edges_of_free_form_faces(model: &Model, flags: &mut Vec<bool>) {
     empty(flags, model.edges.len());
     flags.resize(model.edges.len(), false);
     for face in &model.faces {
-        let crate::brep::FaceGeometry::Trimmed { surface, .. } = &face.geometry else { continue };
+        let Some((surface, _)) = model.surface_of(face) else { continue };
         if matches!(
-            **surface,
+            surface,
             Surface::Nurbs(_) | Surface::Revolution { .. } | Surface::Extrusion { .. } | Surface::Offset { .. }
         ) {
             face.loops.iter().flat_map(|l| &l.uses).for_each(|u| flags[u.edge.index()] = true);

@@ -132,6 +132,7 @@ impl Meshes {
                 let Scratch { border, work } = scratch;
                 let border = border.fill(face, context.lines, &context.degenerate);
                 let border = border.ok_or("a border of too many points")?;
+                let surface = &context.model.surfaces[surface.index()];
                 trimmed(context, (surface, *same_sense), border, reference, work)
                     .or_else(|why| filled(context, face, border, reference, work, why))?
             }

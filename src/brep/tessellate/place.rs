@@ -145,7 +145,7 @@ pub(super) fn places(model: &Model, spans: &[Option<[f64; 2]>]) -> Vec<Option<Pl
             match &face.geometry {
                 FaceGeometry::Faceted(facets) => points.extend(weights(&facets.points).filter(is_finite)),
                 FaceGeometry::Trimmed { surface, .. } if face.loops.iter().all(|l| l.uses.is_empty()) => {
-                    add_surface(&mut points, surface);
+                    add_surface(&mut points, &model.surfaces[surface.index()]);
                 }
                 FaceGeometry::Trimmed { .. } => {
                     let edges = face.loops.iter().flat_map(|l| &l.uses).map(|u| u.edge);

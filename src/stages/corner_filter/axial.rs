@@ -2,7 +2,7 @@
 
 use super::PlacedFaces;
 use super::boundary::{Boundary, Loops};
-use crate::brep::{FaceGeometry, FaceId, Surface};
+use crate::brep::{FaceId, Surface};
 use crate::geometry::revolution::fit_axis;
 use crate::geometry::{Axis, Point, Transform, Vector};
 use crate::stages::parse::Parsed;
@@ -51,10 +51,7 @@ fn candidate(
 }
 
 fn surface(parsed: &Parsed, face: FaceId) -> Option<&Surface> {
-    match &parsed.model.faces[face.index()].geometry {
-        FaceGeometry::Trimmed { surface, .. } => Some(surface),
-        FaceGeometry::Faceted(_) => None,
-    }
+    parsed.model.surface_of(&parsed.model.faces[face.index()]).map(|(surface, _)| surface)
 }
 
 /// Whether the face's surface is one that turns about its axis by definition, or a plane or sphere with a circle.

@@ -2,7 +2,7 @@
 
 use super::edges::EdgeShapes;
 use super::{InnerLoop, LocalOutline, LocalOutlines};
-use crate::brep::{EdgeUse, FaceGeometry, FaceId, Model, Surface, VertexId};
+use crate::brep::{EdgeUse, FaceId, Model, Surface, VertexId};
 use crate::geometry::{Axis, Point, Vector};
 use crate::memory::{empty, held};
 
@@ -238,8 +238,7 @@ fn outer_loop(model: &Model, group: &[FaceId], loops: &Loops) -> Option<usize> {
 }
 
 fn is_plane(model: &Model, face: FaceId) -> bool {
-    let FaceGeometry::Trimmed { surface, .. } = &model.faces[face.index()].geometry else { return false };
-    matches!(**surface, Surface::Plane(_))
+    matches!(model.surface_of(&model.faces[face.index()]), Some((Surface::Plane(_), _)))
 }
 
 #[cfg(test)]

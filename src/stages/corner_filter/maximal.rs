@@ -1,6 +1,6 @@
 //! Maximal faces: adjacent faces that lie on one underlying surface, joined.
 
-use crate::brep::{EdgeId, Face, FaceGeometry, FaceId, Model, Placement, Surface};
+use crate::brep::{EdgeId, FaceId, Model, Placement, Surface};
 use crate::cancel::{Cancel, Cancelled};
 use crate::memory::{empty, held};
 
@@ -89,19 +89,12 @@ fn edges_of<'a>(model: &'a Model, faces: &'a [FaceId]) -> impl Iterator<Item = (
 
 /// Whether both faces lie on one surface with the same side out.
 fn continues(model: &Model, faces: [FaceId; 2], tolerance: f64) -> bool {
-    let [a, b] = faces.map(|face| &model.faces[face.index()]);
-    let (Some((s, s_sense)), Some((t, t_sense))) = (surface(a), surface(b)) else { return false };
+    let [a, b] = faces.map(|face| model.surface_of(&model.faces[face.index()]));
+    let (Some((s, s_sense)), Some((t, t_sense))) = (a, b) else { return false };
     match same_surface(s, t, tolerance) {
         Some(Side::Same) => s_sense == t_sense,
         Some(Side::Opposite) => s_sense != t_sense,
         None => false,
-    }
-}
-
-fn surface(face: &Face) -> Option<(&Surface, bool)> {
-    match &face.geometry {
-        FaceGeometry::Trimmed { surface, same_sense } => Some((surface, *same_sense)),
-        FaceGeometry::Faceted(_) => None,
     }
 }
 

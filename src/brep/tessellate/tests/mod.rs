@@ -53,7 +53,7 @@ impl Builder {
     fn face(&mut self, surface: Surface, same_sense: bool, loops: &[&[(EdgeId, bool)]]) {
         let uses = |l: &[(EdgeId, bool)]| l.iter().map(|&(edge, forward)| EdgeUse { edge, forward }).collect();
         let one = |l: &&[(EdgeId, bool)]| FaceLoop { entity: 0, uses: uses(l), pole: None, outer: false };
-        let geometry = FaceGeometry::Trimmed { surface: Arc::new(surface), same_sense };
+        let geometry = FaceGeometry::Trimmed { surface: self.0.add_surface(surface), same_sense };
         let loops = loops.iter().map(one).collect();
         self.0.faces.push(Face { entity: self.0.faces.len() as u64 + 1, geometry, loops, shell: 0 });
         self.0.shells[0].faces.push(FaceId(self.0.faces.len() as u32 - 1));

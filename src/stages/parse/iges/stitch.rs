@@ -54,7 +54,7 @@ impl<'a> Stitcher<'a> {
         for RawFace { entity, surface, same_sense, loops } in faces {
             cancel.check()?;
             let loops = loops.into_iter().filter_map(|raw| self.face_loop(raw)).collect();
-            let geometry = FaceGeometry::Trimmed { surface: Arc::new(surface), same_sense };
+            let geometry = FaceGeometry::Trimmed { surface: self.model.add_surface(surface), same_sense };
             ids.push(FaceId(self.model.faces.len() as u32));
             self.model.faces.push(Face { entity, geometry, loops, shell });
         }

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::file::{File, Record};
 use crate::brep::{
-    Body, BodyId, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Loops, Model, Shell, Surface, Uses,
+    Body, BodyId, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Loops, Model, Shell, SurfaceId, Uses,
     Vertex, VertexId,
 };
 use crate::cancel::{Cancel, Cancelled};
@@ -25,7 +25,7 @@ pub(super) struct Builder<'a> {
     vertices: FxHashMap<(u64, i64), VertexId>,
     edges: FxHashMap<(u64, i64), Option<EdgeId>>,
     /// A surface, and whether its normal is against that of IGES.
-    surfaces: FxHashMap<u64, (Arc<Surface>, bool)>,
+    surfaces: FxHashMap<u64, (SurfaceId, bool)>,
 }
 
 impl<'a> Builder<'a> {
@@ -147,13 +147,13 @@ impl<'a> Builder<'a> {
         Ok(Face { entity, geometry, loops, shell })
     }
 
-    fn surface(&mut self, entity: u64) -> Read<(Arc<Surface>, bool)> {
+    fn surface(&mut self, entity: u64) -> Read<(SurfaceId, bool)> {
         if let Some(known) = self.surfaces.get(&entity) {
-            return Ok(known.clone());
+            return Ok(*known);
         }
         let (surface, against) = self.file.sheet(entity)?.placed();
-        let made = (Arc::new(surface), against);
-        self.surfaces.insert(entity, made.clone());
+        let made = (self.model.add_surface(surface), against);
+        self.surfaces.insert(entity, made);
         Ok(made)
     }
 

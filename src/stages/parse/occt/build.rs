@@ -10,7 +10,7 @@ use super::shapes::{Data, Kind, Orientation, Use};
 use super::surfaces::Sheet;
 use crate::brep::{
     Body, BodyId, Curve, EdgeId, EdgeUse, Face, FaceGeometry, FaceId, FaceLoop, Facets, Loops, Model, Shell, Surface,
-    VertexId,
+    SurfaceId, VertexId,
 };
 use crate::cancel::{Cancel, Cancelled};
 use crate::geometry::{Aabb, Transform};
@@ -29,7 +29,7 @@ pub(super) struct Builder<'a> {
     pub(super) edges: FxHashMap<(u32, Place), Option<EdgeId>>,
     pub(super) curves: FxHashMap<(u32, Place), Arc<Curve>>,
     /// A surface in a place, and whether its normal is against OCCT's.
-    surfaces: FxHashMap<(u32, Place), (Arc<Surface>, bool)>,
+    surfaces: FxHashMap<(u32, Place), (SurfaceId, bool)>,
     /// Uses and numbers of geometry that may still be copied.
     budget: usize,
 }
@@ -192,22 +192,23 @@ impl<'a> Builder<'a> {
     }
 
     /// A surface in its place, and whether its normal S_u x S_v is against that of OCCT.
-    fn surface(&mut self, entity: u64, number: u32, place: Place) -> Read<(Arc<Surface>, bool)> {
+    fn surface(&mut self, entity: u64, number: u32, place: Place) -> Read<(SurfaceId, bool)> {
         if let Some(known) = self.surfaces.get(&(number, place)) {
-            return Ok(known.clone());
+            return Ok(*known);
         }
         let sheet = self.sheet(entity, number)?;
         self.spend(entity, weight(&sheet.surface))?;
         let transform = self.locations.transform(place).map_err(|why| Fault::new(entity, why))?;
-        let made = match transform {
-            None => (Arc::new(sheet.surface.clone()), sheet.turned),
+        let (surface, turned) = match transform {
+            None => (sheet.surface.clone(), sheet.turned),
             Some(by) => {
                 let (surface, against) = moved_surface(sheet.surface.clone(), by);
                 // OCCT's normal follows the parameters, which a mirror carries along.
-                (Arc::new(surface), sheet.turned ^ against ^ by.mirrors())
+                (surface, sheet.turned ^ against ^ by.mirrors())
             }
         };
-        self.surfaces.insert((number, place), made.clone());
+        let made = (self.model.add_surface(surface), turned);
+        self.surfaces.insert((number, place), made);
         Ok(made)
     }
 

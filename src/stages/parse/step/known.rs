@@ -1,7 +1,7 @@
 //! What was made of instances: a number and a kind for each, where the instance stands in the table.
 
 use super::records::File;
-use crate::brep::{EdgeId, VertexId};
+use crate::brep::{EdgeId, SurfaceId, VertexId};
 use crate::memory::{empty, kept};
 
 /// Something of the model that stands for an instance.
@@ -11,10 +11,13 @@ pub(super) enum Made {
     Edge(EdgeId),
     /// A curve, by an edge that has it.
     Curve(EdgeId),
+    Surface(SurfaceId),
 }
 
+/// Bits of the kind, below those of the number.
+const KIND_BITS: u32 = 3;
 /// The largest number that is kept; what lies beyond is made anew.
-const MOST: u32 = u32::MAX / 4;
+const MOST: u32 = u32::MAX >> KIND_BITS;
 
 /// What was made of the instances of a file: 4 bytes each, found as fast as the instance.
 pub(super) struct Known(Vec<u32>);
@@ -40,11 +43,12 @@ impl Known {
     /// What the instance at a place of the table became.
     pub fn get(&self, place: Option<usize>) -> Option<Made> {
         let made = *self.0.get(place?)?;
-        let number = made >> 2;
-        match made & 3 {
+        let number = made >> KIND_BITS;
+        match made & ((1 << KIND_BITS) - 1) {
             1 => Some(Made::Vertex(VertexId(number))),
             2 => Some(Made::Edge(EdgeId(number))),
             3 => Some(Made::Curve(EdgeId(number))),
+            4 => Some(Made::Surface(SurfaceId(number))),
             _ => None,
         }
     }
@@ -55,11 +59,12 @@ impl Known {
             Made::Vertex(id) => (id.0, 1),
             Made::Edge(id) => (id.0, 2),
             Made::Curve(id) => (id.0, 3),
+            Made::Surface(id) => (id.0, 4),
         };
         if let Some(slot) = place.and_then(|place| self.0.get_mut(place))
             && number < MOST
         {
-            *slot = number << 2 | kind;
+            *slot = number << KIND_BITS | kind;
         }
     }
 }
@@ -70,15 +75,16 @@ mod tests {
 
     #[test]
     fn what_was_made_is_found_until_it_is_forgotten() {
-        let mut known = Known(vec![0; 4]);
-        let all = [Made::Vertex(VertexId(0)), Made::Edge(EdgeId(7)), Made::Curve(EdgeId(MOST - 1))];
+        let mut known = Known(vec![0; 5]);
+        let surface = Made::Surface(SurfaceId(1));
+        let all = [Made::Vertex(VertexId(0)), Made::Edge(EdgeId(7)), Made::Curve(EdgeId(MOST - 1)), surface];
         all.iter().enumerate().for_each(|(place, made)| known.set(Some(place), *made));
-        known.set(Some(3), Made::Edge(EdgeId(MOST)));
+        known.set(Some(4), Made::Edge(EdgeId(MOST)));
         known.set(None, all[0]);
         known.set(Some(9), all[0]);
-        let found: Vec<_> = [Some(0), Some(1), Some(2)].map(|place| known.get(place).unwrap()).to_vec();
+        let found: Vec<_> = [Some(0), Some(1), Some(2), Some(3)].map(|place| known.get(place).unwrap()).to_vec();
         assert_eq!(found, all);
-        assert_eq!([known.get(Some(3)), known.get(Some(9)), known.get(None)], [None; 3]);
+        assert_eq!([known.get(Some(4)), known.get(Some(9)), known.get(None)], [None; 3]);
         known.clear();
         assert_eq!(known.get(Some(1)), None);
     }

@@ -11,7 +11,8 @@ use super::placement::{Geometry, orthonormal};
 use super::records::Record;
 use super::units::Units;
 use crate::brep::{
-    Curve, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceLoop, Loops, Model, Surface, Uses, Vertex, VertexId,
+    Curve, Edge, EdgeId, EdgeUse, Face, FaceGeometry, FaceLoop, Loops, Model, Surface, SurfaceId, Uses, Vertex,
+    VertexId,
 };
 use crate::geometry::{Point, Vector};
 use crate::stages::parse::fault::{Fault, Read};
@@ -35,7 +36,6 @@ pub(super) struct Builder<'a> {
     pub(super) known: Known,
     /// Straight edges of poly loops, by the entities of their ends, the smaller first.
     straight_edges: FxHashMap<[u64; 2], EdgeId>,
-    surfaces: FxHashMap<u64, Arc<Surface>>,
     /// Lists of coordinates that triangles share.
     pub(super) coordinates: FxHashMap<u64, Arc<[Point]>>,
 }
@@ -55,7 +55,6 @@ impl<'a> Builder<'a> {
             model: Model::empty(),
             notes: Notes::default(),
             straight_edges: FxHashMap::default(),
-            surfaces: FxHashMap::default(),
             coordinates: FxHashMap::default(),
         }
     }
@@ -65,7 +64,6 @@ impl<'a> Builder<'a> {
         if units != self.geometry.units {
             self.known.clear();
             self.straight_edges.clear();
-            self.surfaces.clear();
             self.coordinates.clear();
             self.geometry.units = units;
         }
@@ -144,7 +142,7 @@ impl<'a> Builder<'a> {
             return Err(record.fault("a face without area"));
         }
         let plane = Surface::Plane(orthonormal(origin, Some(normal / length), None));
-        Ok(FaceGeometry::Trimmed { surface: Arc::new(plane), same_sense: true })
+        Ok(FaceGeometry::Trimmed { surface: self.model.add_surface(plane), same_sense: true })
     }
 
     fn start_of(&self, used: EdgeUse) -> Point {
@@ -158,13 +156,14 @@ impl<'a> Builder<'a> {
         Ok(LooseFace { entity: id, geometry, loops: Loops::new() })
     }
 
-    fn surface(&mut self, id: u64) -> Read<Arc<Surface>> {
-        if let Some(known) = self.surfaces.get(&id) {
-            return Ok(known.clone());
+    fn surface(&mut self, id: u64) -> Read<SurfaceId> {
+        if let Some(Made::Surface(known)) = self.made(id) {
+            return Ok(known);
         }
-        let surface = Arc::new(self.geometry.surface(id)?);
-        self.surfaces.insert(id, surface.clone());
-        Ok(surface)
+        let surface = self.geometry.surface(id)?;
+        let made = self.model.add_surface(surface);
+        self.note(id, Made::Surface(made));
+        Ok(made)
     }
 
     fn bounds(&mut self, face: u64, ids: &[u64]) -> Read<Loops> {
