@@ -26,6 +26,53 @@ fn paper(parsed: &Parsed) -> Symmetries {
     merge(parsed, &outlines, &matches, &validated, &Options::paper(), &cancel).unwrap()
 }
 
+/// Coverages after a pool of planes across the middle of a box was measured, of which each had such a coverage and
+/// error. Four fifths of the samples are new, and the plane maps all of them.
+fn rivals<const N: usize>(known: [(f64, f64); N]) -> [f64; N] {
+    let parsed = solid(&cuboid(1.0, 2.0, 4.0), &Transform::identity());
+    let (cancel, options, matches) = (Cancel::new(), Options::default(), Matches::default());
+    let validated =
+        validate::validate(&parsed, &[], &matches, &Default::default(), &Default::default(), &cancel).unwrap();
+    let covariance = cpca::covariance(&parsed.mesh);
+    let (parsed, validated) = (&parsed, &validated);
+    let merger =
+        Merger { parsed, outlines: &[], matches: &matches, validated, options: &options, cancel: &cancel, covariance };
+    let plane = |(coverage, error)| SymmetryPlane {
+        plane: Plane { normal: Vector::x(), offset: 0.5 },
+        coverage,
+        error,
+        residual: 0.0,
+        pairs: Vec::new(),
+        selfs: Vec::new(),
+        source: Source::Corners,
+        correlation: None,
+    };
+    let mut pool = known.map(plane);
+    merger.measure_rivals(&mut pool).unwrap();
+    pool.map(|p| p.coverage)
+}
+
+fn completed(coverage: f64) -> f64 {
+    0.2 * coverage + 0.8
+}
+
+#[test]
+fn planes_that_may_tie_with_the_best_are_measured_by_all_samples_while_in_doubt() {
+    // Within 0.005 and three errors of each of 0.93: down to 0.919.
+    let found = rivals([(0.93, 0.002), (0.914, 0.002), (0.912, 0.002), (0.925, 0.0005)]);
+    let expected = [completed(0.93), completed(0.914), 0.912, 0.925];
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{found:?} for {expected:?}");
+    assert_eq!(found[2..], expected[2..]);
+}
+
+#[test]
+fn a_well_known_plane_is_measured_by_all_samples_at_the_bound_of_a_label() {
+    // 0.995 is the bound; three errors are 0.0015.
+    let found = rivals([(0.996, 0.0005), (0.997, 0.0005)]);
+    assert!((found[0] - completed(0.996)).abs() < 2e-4, "{found:?}");
+    assert_eq!(found[1], 0.997);
+}
+
 /// Angle in radians and distance as a share of D between planes.
 fn error(parsed: &Parsed, a: &Plane, b: &Plane) -> (f64, f64) {
     let centroid = &parsed.measures.centroid;
