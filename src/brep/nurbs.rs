@@ -355,6 +355,28 @@ mod tests {
     }
 
     #[test]
+    fn powers_are_splines_of_any_degree() {
+        // t^n is the spline of degree n whose control points are the products of n knots each (its blossom), t the one
+        // of their means; with a double knot inside.
+        let inner = [0.25, 0.5, 0.5, 0.75];
+        for degree in [3, 4, 5, 7, 8, 12, MAX_DEGREE] {
+            let n = degree as f64;
+            let ends = |end: f64| std::iter::repeat_n(end, degree + 1);
+            let knots: Vec<f64> = ends(0.0).chain(inner).chain(ends(1.0)).collect();
+            let point = |k: &[f64]| Point::new(k.iter().product(), k.iter().sum::<f64>() / n, 0.0);
+            let points = knots[1..knots.len() - 1].windows(degree).map(point).collect();
+            let curve = NurbsCurve { degree, knots, points, weights: vec![], closed: false };
+            for t in [0.0, 0.1, 0.25, 0.5, 0.6, 1.0_f64] {
+                let [p, d, dd] = curve.derivatives(t);
+                let [power, slope, bend] = [t.powf(n), n * t.powf(n - 1.0), n * (n - 1.0) * t.powf(n - 2.0)];
+                assert!((p - Vector::new(power, t, 0.0)).norm() < 1e-12, "degree {degree} at {t}");
+                assert!((d - Vector::new(slope, 1.0, 0.0)).norm() < 1e-11 * n, "degree {degree} at {t}");
+                assert!((dd - Vector::new(bend, 0.0, 0.0)).norm() < 1e-10 * n * n, "degree {degree} at {t}");
+            }
+        }
+    }
+
+    #[test]
     fn a_bilinear_patch_has_its_corners_and_twist() {
         let points = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]].map(Point::from).to_vec();
         let surface = NurbsSurface::bilinear(points);
