@@ -293,3 +293,51 @@ fn faceted(facets: &Facets, reference: &Point, patch: &mut Patch) -> Result<Meas
     }
     Ok(Measured { integrals, plain: integrals, warning: None })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brep::Placement;
+    use crate::geometry::Vector;
+
+    #[test]
+    fn a_patch_that_finer_triangles_do_not_help_is_put_back() {
+        // Three radians of a cylinder of radius 1, whose rims have one chord each: only finer edges would help.
+        let placement = Placement { origin: Point::origin(), x: Vector::x(), y: Vector::y(), z: Vector::z() };
+        let surface = Surface::Cylinder { placement, radius: 1.0 };
+        let chart = Chart::new(&surface, true, &[], 10.0);
+        let (model, cancel, reference) = (Model::empty(), Cancel::new(), Point::origin());
+        let fineness = Fineness { deflection: 0.01, angle: 0.3 };
+        let mut lines = EdgeLines::default();
+        let context = Context {
+            model: &model,
+            cancel: &cancel,
+            lines: &mut lines,
+            degenerate: Vec::new(),
+            fineness,
+            coarser: 1.0,
+            size: 10.0,
+            reference: Vec::new(),
+        };
+        let mut work = Work::default();
+        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 4.0], [0.0, 4.0_f64]];
+        let path = work.paths.add();
+        for (a, b) in corners.into_iter().zip([1, 2, 3, 0].map(|i| corners[i])) {
+            path.uv.push(a);
+            path.middles.push([0, 1].map(|k| 0.5 * (a[k] + b[k])));
+            path.points.push(chart.point(a));
+        }
+        // Finer triangles are worse: those along the rims get narrower and stand up.
+        let finer = Fineness { deflection: FINER * fineness.deflection, angle: FINER.sqrt() * fineness.angle };
+        let worse = patch(&chart, &finer, false, &reference, &mut work).unwrap();
+        let first = patch(&chart, &fineness, true, &reference, &mut work).unwrap();
+        let (off, plain) = (error(&first, &context), first.plain);
+        assert!(off > 1.0 && error(&worse, &context) > off);
+        let points = work.patch.points.clone();
+        let best = made_again(&context, &chart, first, &reference, &mut work);
+        assert_eq!(work.patch.points, points);
+        let measured = integrate_triangles(&work.patch.points, &work.patch.triangles, &reference);
+        let numbers = |i: &Integrals| [i.area, i.flux];
+        assert_eq!([&best.plain, &measured].map(numbers), [numbers(&plain); 2]);
+    }
+}
