@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use symalign::alignment::Method;
 use symalign::evaluate::Named;
@@ -152,7 +153,7 @@ pub struct Query {
     #[arg(long, value_name = "DIR", default_value = "store")]
     pub store: PathBuf,
     /// Number of hits
-    #[arg(short, default_value_t = 10)]
+    #[arg(short, default_value_t = 10, value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     pub k: usize,
     /// Method to compare by, such as cpca or cpca:phase [default: the magnitudes of the store's first frame]
     #[arg(long, value_name = "M")]

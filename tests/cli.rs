@@ -8,7 +8,7 @@ use common::{archive, code, run, stderr, stdout};
 fn bad_usage_and_bad_settings_cannot_run() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::create_dir(dir.path().join("empty")).unwrap();
-    let cases: [(&[&str], &str); 7] = [
+    let cases: [(&[&str], &str); 8] = [
         (&["run"], "pipeline.toml"),
         (&["run", "missing"], "missing"),
         (&["run", "--shard", "3/2", "x"], "3/2"),
@@ -16,6 +16,7 @@ fn bad_usage_and_bad_settings_cannot_run() {
         (&["eval"], "not finished"),
         (&["run", "empty", "--store", "none"], "no model in the input"),
         (&["frobnicate"], "frobnicate"),
+        (&["query", "x.step", "-k", "0"], "1.."),
     ];
     for (args, named) in cases {
         let output = run(dir.path(), args);

@@ -70,6 +70,21 @@ fn a_tar_stream_is_read_from_standard_input() {
 }
 
 #[test]
+fn pictures_of_models_of_one_name_do_not_replace_each_other() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = archive(dir.path());
+    for (i, part) in ["a", "b"].iter().enumerate() {
+        std::fs::create_dir(dir.path().join(part)).unwrap();
+        std::fs::copy(folder.join(MODELS[i]), dir.path().join(part).join("part.step")).unwrap();
+    }
+    let output = run(dir.path(), &["inspect", "a/part.step", "b/part.step", "--render", "pictures"]);
+    assert_eq!(code(&output), 0, "{}", stderr(&output));
+    let picture = |name: &str| std::fs::read(dir.path().join("pictures").join(name)).unwrap();
+    assert_ne!(picture("part.step-silhouettes.png"), picture("part.step~2-silhouettes.png"));
+    assert_eq!(std::fs::read_dir(dir.path().join("pictures")).unwrap().count(), 8);
+}
+
+#[test]
 fn inspect_prints_the_fields_of_the_contract() {
     let dir = tempfile::tempdir().unwrap();
     archive(dir.path());

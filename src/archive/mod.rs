@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Result, RunError};
 use expand::Budget;
 pub use kind::{Kind, kind_of};
-pub use names::prefixes;
+pub use names::{prefixes, unique};
 
 /// Limits on what is read, so that a small file cannot fill the memory or keep the reader for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,16 +11,14 @@ pub fn prefixes(inputs: &[PathBuf]) -> Vec<String> {
     let mut taken = HashSet::new();
     let name =
         |input: &PathBuf| input.file_name().map_or_else(|| "-".into(), |name| name.to_string_lossy().into_owned());
-    inputs
-        .iter()
-        .map(name)
-        .map(|name| {
-            let numbered = (2..).map(|n| format!("{name}~{n}"));
-            let mut names = std::iter::once(name.clone()).chain(numbered);
-            let free = names.find(|name| taken.insert(name.clone())).unwrap_or(name);
-            format!("{free}/")
-        })
-        .collect()
+    inputs.iter().map(|input| format!("{}/", unique(name(input), &mut taken))).collect()
+}
+
+/// A name, with a number where it is taken already; then it is taken.
+pub fn unique(name: String, taken: &mut HashSet<String>) -> String {
+    let numbered = (2..).map(|n| format!("{name}~{n}"));
+    let mut names = std::iter::once(name.clone()).chain(numbered);
+    names.find(|name| taken.insert(name.clone())).unwrap_or(name)
 }
 
 /// The path of a file inside a folder.
@@ -50,6 +48,13 @@ mod tests {
         let inputs = ["a/parts", "b/parts", "x.zip"].map(PathBuf::from);
         assert_eq!(prefixes(&inputs), ["parts/", "parts~2/", "x.zip/"]);
         assert_eq!(prefixes(&inputs[..1]), [""]);
+    }
+
+    #[test]
+    fn a_name_met_again_gets_a_number() {
+        let mut taken = HashSet::new();
+        let named = ["a", "b", "a", "a", "a~2"].map(|name| unique(name.to_owned(), &mut taken));
+        assert_eq!(named, ["a", "b", "a~2", "a~3", "a~2~2"]);
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! `inspect`.
 
+use std::collections::HashSet;
 use std::path::Path;
 
+use symalign::archive::unique;
 use symalign::cancel::Cancel;
 use symalign::error::{Result, RunError};
 use symalign::inspect::{Inspection, inspect as inspect_all, json, text};
@@ -20,7 +22,7 @@ pub fn inspect(args: &Inspect) -> Result<Exit> {
     }
     // Everything is told in the file's own coordinates.
     settings.random_pose = None;
-    let mut failed = false;
+    let (mut failed, mut names) = (false, HashSet::new());
     let mut each = |inspection: Inspection| {
         failed |= inspection.result.is_err();
         if args.json {
@@ -29,7 +31,10 @@ pub fn inspect(args: &Inspect) -> Result<Exit> {
             super::print(&text::summary(&inspection))?;
         }
         match (&args.render, &inspection.result) {
-            (Some(dir), Ok(described)) => draw(dir, &inspection.model, described, &settings),
+            (Some(dir), Ok(described)) => {
+                let name = unique(file_name(&inspection.model), &mut names);
+                draw(dir, &name, described, &settings)
+            }
             _ => Ok(()),
         }
     };
@@ -37,16 +42,15 @@ pub fn inspect(args: &Inspect) -> Result<Exit> {
     Ok(if failed { Exit::ModelFailed } else { Exit::Done })
 }
 
-/// Writes the pictures of a model into `dir`, named after it.
-fn draw(dir: &Path, model: &str, described: &Described, settings: &Settings) -> Result<()> {
+/// Writes the pictures of a model into `dir`; the names of their files start with `name`.
+fn draw(dir: &Path, name: &str, described: &Described, settings: &Settings) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|e| RunError::file(dir, e))?;
     let ranked = &described.framed.ranked;
     let (parsed, canonical) = (&ranked.posed.parsed, &described.framed.canonical);
     let options = &settings.descriptor;
     let views = silhouettes(&parsed.wireframe, &parsed.measures, &canonical.frame, options, &Cancel::new());
-    let views = views.map_err(|e| RunError::Usage(format!("{model}: {e}")))?;
-    let name = file_name(model);
-    let drawn = render::figures::render_all(dir, &name, parsed, &ranked.symmetries, canonical, &views);
+    let views = views.map_err(|e| RunError::Usage(format!("{name}: {e}")))?;
+    let drawn = render::figures::render_all(dir, name, parsed, &ranked.symmetries, canonical, &views);
     for file in drawn.map_err(|e| RunError::file(dir, e))? {
         eprintln!("{}", file.display());
     }

@@ -93,7 +93,8 @@ impl Feed<'_> {
         archive::visit(&self.settings.input, &limits, &room, &mut |mut member| {
             going = !told_to_stop();
             if going {
-                make_unique(&mut member.id, &mut ids);
+                // Archives may hold a name twice.
+                member.id = archive::unique(member.id, &mut ids);
                 going = self.member(member, &mut manifest, outbox);
             }
             if going { ControlFlow::Continue(bench.files.take()) } else { ControlFlow::Break(()) }
@@ -145,16 +146,6 @@ impl Feed<'_> {
     }
 }
 
-/// Archives may hold a name twice; the later ones get a number.
-fn make_unique(id: &mut String, ids: &mut HashSet<String>) {
-    let name = id.clone();
-    let mut number = 2;
-    while !ids.insert(id.clone()) {
-        *id = format!("{name}~{number}");
-        number += 1;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -166,16 +157,5 @@ mod tests {
             assert_eq!(shards.iter().filter(|shard| shard.owns(&[byte; 32])).count(), 1);
         }
         assert!(["", "1", "0/2", "3/2", "a/b", "1/0", "-1/2"].iter().all(|text| text.parse::<Shard>().is_err()));
-    }
-
-    #[test]
-    fn a_name_met_again_gets_a_number() {
-        let mut ids = HashSet::new();
-        let named = ["a", "b", "a", "a", "a~2"].map(|name| {
-            let mut id = name.to_owned();
-            make_unique(&mut id, &mut ids);
-            id
-        });
-        assert_eq!(named, ["a", "b", "a~2", "a~3", "a~2~2"]);
     }
 }
