@@ -4,15 +4,15 @@ use super::{Merger, SymmetryPlane};
 use crate::alignment::triangles;
 use crate::cancel::Cancelled;
 use crate::geometry::{Plane, Vector, any_perpendicular};
-use crate::silhouette::shadow;
+use crate::silhouette::draw::Raster;
 use crate::stages::isometry::Source;
 use crate::stages::validate::support::Round;
 
-/// Tied planes whose silhouettes are measured, those with the smallest mean shadow.
-const MEASURED: usize = 16;
-/// Slices in which their areas are measured: to two thousandths, where a whole side ends within one.
-const SLICES: u32 = 256;
-/// Silhouettes closer than this (relative) are equal.
+/// Tied planes whose silhouettes are drawn, those with the smallest mean shadow.
+const DRAWN: usize = 16;
+/// Pixels along a side of them.
+const PIXELS: usize = 256;
+/// Silhouettes closer than this (relative) are equal: a few rows of pixels.
 const EQUAL_AREA: f64 = 0.02;
 /// Silhouettes that differ by more than this are not those of planes that the model maps onto each other.
 const UNLIKE_AREA: f64 = 0.004;
@@ -62,7 +62,7 @@ fn settled(merger: &Merger, tied: Vec<SymmetryPlane>) -> Result<Vec<SymmetryPlan
     }
     let mut keyed: Vec<_> = tied.into_iter().map(|p| (Key::of(merger, &p), p)).collect();
     keyed.sort_by(|a, b| a.0.shadow.total_cmp(&b.0.shadow));
-    for (key, plane) in keyed.iter_mut().take(MEASURED) {
+    for (key, plane) in keyed.iter_mut().take(DRAWN) {
         key.silhouette = shadow_along(merger, &plane.plane)?;
     }
     let mut ordered = Vec::new();
@@ -73,16 +73,20 @@ fn settled(merger: &Merger, tied: Vec<SymmetryPlane>) -> Result<Vec<SymmetryPlan
     Ok(ordered)
 }
 
-/// Area of the model's shadow along the normal of a plane, mm^2.
+/// Area of the model's shadow along the normal of a plane, mm^2, by pixels.
 fn shadow_along(merger: &Merger, plane: &Plane) -> Result<f64, Cancelled> {
+    let (wireframe, measures) = (&merger.parsed.wireframe, &merger.parsed.measures);
+    let scale = PIXELS as f64 / measures.tolerance.size();
+    let raster = Raster { centre: measures.centroid, scale, side: PIXELS };
     let right = any_perpendicular(&plane.normal);
-    let (axes, centre) = ([&right, &plane.normal.cross(&right)], &merger.parsed.measures.centroid);
-    shadow::area(&merger.parsed.wireframe, axes, centre, SLICES, merger.cancel)
+    let [x, y] = [right, plane.normal.cross(&right)].map(|axis| raster.project(wireframe, &axis));
+    let picture = raster.draw(wireframe, [&x, &y], merger.cancel)?;
+    Ok(picture.area() as f64 / (scale * scale))
 }
 
 /// What settles a tie, in this order.
 struct Key {
-    /// Area of the shadow along the normal, mm^2; infinite where not measured.
+    /// Area of the shadow along the normal, mm^2; infinite where not drawn.
     silhouette: f64,
     /// In steps of 1e-5 D.
     residual: i64,
