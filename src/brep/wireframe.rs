@@ -51,6 +51,8 @@ const NOISE: f64 = 1e-12;
 const SLIVER: f64 = 1e3;
 /// No edge.
 const NONE: u32 = u32::MAX;
+/// An edge whose ends are both corners of more triangles is found in a table.
+const HUB: u32 = 32;
 
 impl Wireframe {
     /// That of a mesh.
@@ -104,6 +106,8 @@ struct Maker {
     last: Vec<u32>,
     /// Of each edge the one found before it at the same end.
     before: Vec<u32>,
+    /// Edges between hubs, by their ends: each may have any number of them.
+    between_hubs: FxHashMap<[u32; 2], u32>,
     /// Of each edge the third vertex of the first triangle beside it.
     beside: Vec<u32>,
     /// Distances that may be rounding only, mm.
@@ -124,34 +128,45 @@ impl Maker {
             normals: Vec::with_capacity(triangles),
         };
         let (before, beside) = (Vec::with_capacity(edges), Vec::with_capacity(edges));
-        Self { made, corners, last, before, beside, noise: NOISE * reach }
+        let between_hubs = FxHashMap::default();
+        Self { made, corners, last, before, between_hubs, beside, noise: NOISE * reach }
     }
 
     /// The side from one vertex to another of a triangle whose third vertex is `beside`.
     fn side(&mut self, ends: [u32; 2], beside: u32) -> Side {
-        let turned = [ends[1], ends[0]];
-        let end = self.kept_at(ends);
-        let mut number = self.last[end];
-        while number != NONE {
-            let edge = number as usize;
-            let found = self.made.edges[edge];
-            if found == ends || found == turned {
-                if self.made.bends[edge]
-                    && self.beside[edge] != beside
-                    && self.is_plane(ends, [self.beside[edge], beside])
-                {
-                    self.made.bends[edge] = false;
-                }
-                return Side::new(edge, found == turned);
-            }
-            number = self.before[edge];
+        let number = self.found(ends);
+        if number == NONE {
+            self.made.edges.push(ends);
+            self.made.bends.push(true);
+            self.beside.push(beside);
+            return Side::new(self.made.edges.len() - 1, false);
         }
-        self.before.push(self.last[end]);
-        self.last[end] = self.made.edges.len() as u32;
-        self.made.edges.push(ends);
-        self.made.bends.push(true);
-        self.beside.push(beside);
-        Side::new(self.made.edges.len() - 1, false)
+        let edge = number as usize;
+        if self.made.bends[edge] && self.beside[edge] != beside && self.is_plane(ends, [self.beside[edge], beside]) {
+            self.made.bends[edge] = false;
+        }
+        Side::new(edge, self.made.edges[edge] != ends)
+    }
+
+    /// The edge between two vertices, whichever comes first; where there is none, the next one will be found as that.
+    fn found(&mut self, ends: [u32; 2]) -> u32 {
+        let (end, next) = (self.kept_at(ends), self.made.edges.len() as u32);
+        let turned = [ends[1], ends[0]];
+        if self.corners[end] > HUB {
+            let before = *self.between_hubs.entry(ends.min(turned)).or_insert(next);
+            if before == next {
+                self.before.push(NONE);
+            }
+            return if before == next { NONE } else { before };
+        }
+        let mut number = self.last[end];
+        while number != NONE && ![ends, turned].contains(&self.made.edges[number as usize]) {
+            number = self.before[number as usize];
+        }
+        if number == NONE {
+            self.before.push(std::mem::replace(&mut self.last[end], next));
+        }
+        number
     }
 
     /// The end at which an edge is kept: that with fewer triangles, for there may be any number at the hub of a wheel.
@@ -215,6 +230,23 @@ mod tests {
             for (side, next) in sides.iter().zip([sides[1], sides[2], sides[0]]) {
                 let end = apart.edges[side.edge()][usize::from(!side.is_reversed())];
                 assert_eq!(end as usize, apart.start(next));
+            }
+        }
+    }
+
+    /// All triangles of a few points: each pair of points is one edge, whatever the number of triangles around them, and
+    /// looked for in a table where that is large.
+    #[test]
+    fn edges_between_hubs_are_found_once() {
+        for count in [4_u32, 9, 10, 40] {
+            let angle = |i: u32| f64::from(i) * 0.37;
+            let points = (0..count).map(|i| Point::new(angle(i).cos(), angle(i).sin(), f64::from(i))).collect();
+            let pairs = |a: u32| (a + 1..count).flat_map(move |b| (b + 1..count).map(move |c| [a, b, c]));
+            let triangles: Vec<_> = (0..count).flat_map(pairs).collect();
+            let all = Wireframe::of(&shapes::mesh(points, triangles.clone()));
+            assert_eq!(all.edges.len(), (count * (count - 1) / 2) as usize);
+            for (sides, corners) in all.triangles.iter().zip(&triangles) {
+                assert_eq!(sides.map(|side| all.start(side) as u32), *corners);
             }
         }
     }
