@@ -153,6 +153,7 @@ fn count(bytes: i64) {
 
 /// From this size on, bytes, a piece of memory is the system's again as soon as it is free. Smaller ones are taken and
 /// given back for every model: asking the system for them would cost a tenth of the time.
+#[cfg(target_env = "gnu")]
 const LARGE: i32 = 4 << 20;
 
 /// Places for each core that threads take memory from.
