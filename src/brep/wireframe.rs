@@ -153,11 +153,12 @@ impl Maker {
         let (end, next) = (self.kept_at(ends), self.made.edges.len() as u32);
         let turned = [ends[1], ends[0]];
         if self.corners[end] > HUB {
-            let before = *self.between_hubs.entry(ends.min(turned)).or_insert(next);
-            if before == next {
-                self.before.push(NONE);
+            let number = *self.between_hubs.entry(ends.min(turned)).or_insert(next);
+            if number < next {
+                return number;
             }
-            return if before == next { NONE } else { before };
+            self.before.push(NONE);
+            return NONE;
         }
         let mut number = self.last[end];
         while number != NONE && ![ends, turned].contains(&self.made.edges[number as usize]) {

@@ -1,4 +1,4 @@
-//! Cells of width 1 in a row: pixels, samples, slices.
+//! Cells of width 1 in a row: pixels, samples, slices; and where groups start that lie in a row.
 
 /// The first of `count` cells whose centre (at halves) is not before `c`; `count` if there is none.
 #[inline]
@@ -18,6 +18,13 @@ pub fn floor(x: f64) -> i32 {
     whole.saturating_sub(i32::from(f64::from(whole) > x))
 }
 
+/// Turns the sizes of groups that lie one after the other into where each starts; the size of all.
+pub fn starts(sizes: &mut [usize]) -> usize {
+    let mut total = 0;
+    sizes.iter_mut().for_each(|size| total += std::mem::replace(size, total));
+    total
+}
+
 /// The centre of a cell.
 #[inline]
 pub fn centre(cell: usize) -> f64 {
@@ -32,6 +39,12 @@ mod tests {
     fn numbers_are_rounded_down() {
         let down = [-1e300, -2.5, -2.0, -0.1, 0.0, 0.9, 3.0, 1e300].map(floor);
         assert_eq!(down, [i32::MIN, -3, -2, -1, 0, 0, 3, i32::MAX]);
+    }
+
+    #[test]
+    fn groups_start_where_those_before_them_end() {
+        let mut sizes = [3, 0, 2];
+        assert_eq!((starts(&mut sizes), sizes), (5, [0, 3, 3]));
     }
 
     #[test]

@@ -138,8 +138,7 @@ impl Feed<'_> {
             self.budget.give_back(job.bytes);
             return false;
         }
-        // The job counts the bytes of the file; the memory that they are in may be larger.
-        job.cancel.account().add((bytes.capacity() - bytes.len()) as u64);
+        job.take_over(&bytes);
         let job = Arc::new(job);
         self.bench.enter(&job);
         outbox.send(Parcel { job, load: Ok(bytes) }).is_ok()

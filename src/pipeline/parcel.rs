@@ -75,6 +75,12 @@ impl Job {
         Self { number, id, hash, bytes, cancel, clock: Mutex::default() }
     }
 
+    /// Takes over the memory that its file's bytes are in: all of it is on its account, not only what the bytes fill.
+    #[allow(clippy::ptr_arg)] // A slice does not know its list's capacity.
+    pub fn take_over(&self, file: &Vec<u8>) {
+        self.cancel.account().add((file.capacity() - file.len()) as u64);
+    }
+
     /// The seconds spent so far in stages that ended.
     pub fn seconds(&self) -> Seconds {
         self.clock().spent

@@ -37,7 +37,7 @@ pub fn describe(id: &str, bytes: Vec<u8>, settings: &Settings) -> (Result<Descri
     let bench = Bench::new(1, allowed(settings));
     let hash = *blake3::hash(&bytes).as_bytes();
     let job = Arc::new(Job::new(0, id.to_owned(), hash, bytes.len() as u64));
-    job.cancel.account().add((bytes.capacity() - bytes.len()) as u64);
+    job.take_over(&bytes);
     bench.enter(&job);
     let result = std::thread::scope(|scope| {
         let (finished, over) = bounded::<()>(0);

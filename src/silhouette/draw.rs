@@ -46,8 +46,8 @@ impl Raster {
         let mut picture = Silhouette::new(self.side);
         let mut lines = Lines::new(self.side);
         for outline in outlines(wireframe, &x.axis.cross(&y.axis), cancel)? {
-            let ends = outline.ends.map(|i| [x.of[i as usize], y.of[i as usize]]);
-            lines.add(&mut picture, ends, outline.layers);
+            let (ends, gained) = outline.upwards(|i| [x.of[i], y.of[i]]);
+            lines.add(&mut picture, ends, gained);
         }
         lines.fill(&mut picture, cancel)?;
         Ok(picture)
@@ -88,12 +88,9 @@ impl Lines {
         Self { all: Vec::new(), begin: vec![NONE; side] }
     }
 
-    /// Adds a line with so many layers more to its left than to its right. One that stays in a row is drawn at once.
-    fn add(&mut self, picture: &mut Silhouette, [mut from, mut to]: [[f64; 2]; 2], layers: i32) {
-        let mut gained = -layers;
-        if to[1] < from[1] {
-            (from, to, gained) = (to, from, layers);
-        }
+    /// Adds a line by its ends, the lower one first, with so many layers more to its right than to its left. One that
+    /// stays in a row is drawn at once.
+    fn add(&mut self, picture: &mut Silhouette, [from, to]: [[f64; 2]; 2], gained: i32) {
         let [pixel, row] = from.map(|c| cell(c, self.begin.len()));
         let end = to.map(|c| cell(c, self.begin.len()));
         if row == end[1] {

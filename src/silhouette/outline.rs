@@ -18,6 +18,16 @@ pub struct Outline {
     pub layers: i32,
 }
 
+impl Outline {
+    /// Its lower and its upper end where vertices lie `at` some place of the view (right, up), and how many layers more
+    /// lie to its right than to its left on the way up.
+    #[inline]
+    pub fn upwards(&self, at: impl Fn(usize) -> [f64; 2]) -> ([[f64; 2]; 2], i32) {
+        let [from, to] = self.ends.map(|i| at(i as usize));
+        if to[1] < from[1] { ([to, from], self.layers) } else { ([from, to], -self.layers) }
+    }
+}
+
 /// Triangles that are turned from the viewer by less (radians) are seen edge-on and count as facing him, so that of the
 /// walls of a step that is seen from above none has outlines.
 const EDGE_ON: f32 = 1e-5;

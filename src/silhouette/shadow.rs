@@ -24,7 +24,7 @@ pub fn area(
 ) -> Result<f64, Cancelled> {
     let count = count.clamp(1, 65_536) as usize;
     let place = |p: &Point| [along, across].map(|axis| axis.dot(&(p - centre)));
-    let places: Vec<_> = wireframe.vertices.iter().map(place).collect();
+    let mut places: Vec<_> = wireframe.vertices.iter().map(place).collect();
     let (low, high) =
         places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (less(l, p[1]), more(h, p[1])));
     let thickness = (high - low) / count as f64;
@@ -32,8 +32,8 @@ pub fn area(
         return Ok(0.0);
     }
     // Heights in slices.
-    let places: Vec<_> = places.into_iter().map(|[x, y]| [x, (y - low) / thickness]).collect();
-    let line = |o: Outline| Line::new(o.ends.map(|i| places[i as usize]), o.layers, count);
+    places.iter_mut().for_each(|[_, y]| *y = (*y - low) / thickness);
+    let line = |outline: Outline| Line::new(outline.upwards(|i| places[i]), count);
     let mut lines: Vec<_> = outlines(wireframe, &along.cross(across), cancel)?.filter_map(line).collect();
     lines.sort_unstable_by_key(|line| line.slices.start);
     Ok(thickness * covered(&lines, count, cancel)?)
@@ -49,13 +49,8 @@ struct Line {
 }
 
 impl Line {
-    /// That of an outline with so many layers more to its left than to its right, unless it lies between two of `count`
-    /// slices.
-    fn new([mut from, mut to]: [[f64; 2]; 2], layers: i32, count: usize) -> Option<Self> {
-        let mut gained = -layers;
-        if to[1] < from[1] {
-            (from, to, gained) = (to, from, layers);
-        }
+    /// That of an outline on its way up, unless it lies between two of `count` slices.
+    fn new(([from, to], gained): ([[f64; 2]; 2], i32), count: usize) -> Option<Self> {
         let slices = first_centre(from[1], count)..first_centre(to[1], count);
         let slope = (to[0] - from[0]) / (to[1] - from[1]);
         (!slices.is_empty()).then_some(Self { from, slope, slices, gained })

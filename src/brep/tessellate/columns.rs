@@ -2,6 +2,7 @@
 
 use super::chart::Uv;
 use super::domain::crosses_below;
+use crate::geometry::cells::starts;
 
 /// Segments in columns along one coordinate: about as many columns as segments in each, so that the thousands of holes
 /// of a plate do not cost their square.
@@ -30,12 +31,8 @@ impl<'a> Columns<'a> {
             let touched = touched(&columns, segment);
             columns.ends[touched].iter_mut().for_each(|end| *end += 1);
         }
-        let mut sum = 0;
-        for end in &mut columns.ends {
-            sum += std::mem::replace(end, sum);
-        }
         // Each column's end grows from its start as its members come.
-        columns.members.resize(sum, 0);
+        columns.members.resize(starts(&mut columns.ends), 0);
         for (i, segment) in segments.iter().enumerate() {
             for column in touched(&columns, segment) {
                 columns.members[columns.ends[column]] = i as u32;

@@ -9,6 +9,7 @@ use super::chart::{Chart, Uv};
 use super::domain::Patch;
 use super::triangulate::doubled_area;
 use crate::brep::Surface;
+use crate::geometry::cells::starts;
 use crate::geometry::{Point, Vector};
 use crate::memory::held;
 
@@ -136,12 +137,8 @@ impl Sides {
         ends.clear();
         ends.resize(patch.uv.len(), 0);
         patch.triangles.iter().flat_map(|t| ordered(*t)).for_each(|[a, _]| ends[a as usize] += 1);
-        let mut start = 0;
-        for end in &mut *ends {
-            start += std::mem::replace(end, start);
-        }
         all.clear();
-        all.resize(start, ([0; 2], 0.0));
+        all.resize(starts(ends), ([0; 2], 0.0));
         for (triangle, area) in patch.triangles.iter().zip(areas) {
             for side in ordered(*triangle) {
                 let end = &mut ends[side[0] as usize];

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::brep::Wireframe;
-use crate::geometry::cells::first_centre;
+use crate::geometry::cells::{first_centre, starts};
 
 use super::reference::Turntable;
 use super::slices::{Flat, NOISE};
@@ -147,9 +147,7 @@ pub(super) fn group<T: Clone + Default>(things: &[(u32, T)], count: usize, sorte
     ends.resize(count, 0);
     things.iter().for_each(|(group, _)| ends[*group as usize] += 1);
     // Sizes become starts, and as things are put in, ends.
-    let mut total = 0;
-    ends.iter_mut().for_each(|size| total += std::mem::replace(size, total));
-    sorted.resize(total, T::default());
+    sorted.resize(starts(ends), T::default());
     for (group, thing) in things {
         let end = &mut ends[*group as usize];
         sorted[*end] = thing.clone();
